@@ -1,0 +1,43 @@
+"""Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
+
+from fuzzyq_bullet.planning.base import MODES, Decision, Mode, Motion, Observation, Planner
+from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
+from fuzzyq_bullet.planning.improved import ImprovedFuzzyPlanner
+from fuzzyq_bullet.planning.registry import (
+    DEFAULT_PLANNER,
+    make_planner,
+    planner_names,
+    register_planner,
+    settings_for,
+)
+from fuzzyq_bullet.planning.settings import (
+    FuzzySettings,
+    ImprovedFuzzySettings,
+    PlannerSettings,
+    RoutineSettings,
+)
+
+__all__ = [
+    "DEFAULT_PLANNER",
+    "MODES",
+    "Decision",
+    "FuzzyPlanner",
+    "FuzzySettings",
+    "ImprovedFuzzyPlanner",
+    "ImprovedFuzzySettings",
+    "Mode",
+    "Motion",
+    "Observation",
+    "Planner",
+    "PlannerSettings",
+    "RoutineSettings",
+    "make_planner",
+    "planner_names",
+    "register_planner",
+    "settings_for",
+]
+
+register_planner("fuzzy", FuzzySettings, lambda settings, rng: FuzzyPlanner(settings))
+register_planner(
+    "improved-fuzzy", ImprovedFuzzySettings, lambda settings, rng: ImprovedFuzzyPlanner(settings)
+)

@@ -1,0 +1,144 @@
+"""What a planner sees, what it decides, and the one method it has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Protocol, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+Mode: TypeAlias = Literal["routine", "breakout", "following"]
+MODES: tuple[Mode, ...] = get_args(Mode)
+
+STEP_UNIT = 0.2
+"""S_p, the standard single step (m): the unit of the fuzzy controller."""
+LONGEST_STRIDE = 2.0
+"""Upper end of N_s: the longest step is this many S_p."""
+
+RangeSensor: TypeAlias = Callable[[Sequence[float]], Floats]
+"""Free travel to contact (m, at most the sensor's range) along each world heading (rad), one batch."""
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """What the robot's body can do; the planner's braking rests on it.
+
+    Attributes:
+        max_speed: Greatest speed (m/s).
+        max_turn_rate: Greatest turn rate (rad/s).
+        acceleration: Greatest change of speed, up or down (m/s²).
+        turn_acceleration: Greatest change of the turn rate (rad/s²).
+        period: Time between two decisions (s).
+        radius: Radius of the robot's disc (m).
+        margin: How much wider than the disc a detection line is, on either side (m).
+    """
+
+    max_speed: float
+    max_turn_rate: float
+    acceleration: float
+    turn_acceleration: float
+    period: float
+    radius: float
+    margin: float
+
+    def way_to_stop(self, speed: float) -> float:
+        """Return the way (m) from full braking at ``speed`` (m/s) to a stop."""
+        return speed * speed / (2.0 * self.acceleration)
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """All a planner may know at one instant. It cannot see the map.
+
+    Attributes:
+        time: Time since the start (s).
+        position: Centre of the robot (m), world frame, shape (2,).
+        heading: Direction the robot faces (rad), anticlockwise from x.
+        speed: Forward speed (m/s).
+        turn_rate: Turn rate (rad/s), positive to the left.
+        goal: Centre of the goal (m), world frame, shape (2,).
+        goal_radius: Radius of the goal (m).
+        range: Longest distance the sensor tells (m): 5·S_p in the paper.
+        sense: The range sensor: free distance along any world headings.
+        motion: Limits of a body that must turn and brake, or None for the paper's point robot,
+            which faces any way at once and stops at once (Eq. 17).
+    """
+
+    time: float
+    position: tuple[float, float]
+    heading: float
+    speed: float
+    turn_rate: float
+    goal: tuple[float, float]
+    goal_radius: float
+    range: float
+    sense: RangeSensor
+    motion: Motion | None = None
+
+
+_NO_LINES = np.full(3, np.nan)
+_NO_SETS = np.full(5, np.nan)
+_NO_RULES = np.full((5, 5), np.nan)
+for _blank in (_NO_LINES, _NO_SETS, _NO_RULES):
+    _blank.flags.writeable = False
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """Where to go next, and everything a picture needs to show why.
+
+    Only ``heading``, ``step`` and ``reach`` move the robot. The rest explains the decision; a
+    planner without fuzzy sets leaves it at its blank (NaN) default.
+
+    Attributes:
+        heading: World heading of the next step (rad).
+        step: Length of the next step (m), at least 0 (Eq. 17: ω1·N_s·S_p).
+        reach: Distance known to be free along the way (m); the wheels brake so that the robot
+            could stop within it. Infinite where nothing was checked.
+        mode: The part of the planner that decided.
+        lines: World headings of the left, middle and right detection lines (rad), shape (3,).
+        lengths: Their sensed free lengths (m), shape (3,).
+        distance: d, the fuzzy controller's first input, in units of S_p.
+        difference: Df = left − right (Eq. 14), its second input, in units of S_p.
+        near: Memberships of d in VN, N, M, F, VF, shape (5,).
+        side: Memberships of Df in NB, NS, ZO, PS, PB, shape (5,).
+        rules: Firing strengths (Eq. 2), shape (5, 5): a row for each label of d, a column for Df.
+        turn: N_a, the turn scale in [−2, 2], positive to the left.
+        stride: N_s, the step scale in [0, 2].
+        weights: (ω1, ω2) of Eq. 17: of the step and of the turn.
+        guard: Free length sensed along the final heading (m), NaN where not sensed.
+        target: A temporary goal or the boundary point being followed (m), NaN when there is none.
+        hopeless: True when the planner knows that it cannot go on; the episode ends as ``stuck``.
+    """
+
+    heading: float
+    step: float
+    reach: float = float("inf")
+    mode: Mode = "routine"
+    lines: Floats = field(default_factory=lambda: _NO_LINES)
+    lengths: Floats = field(default_factory=lambda: _NO_LINES)
+    distance: float = float("nan")
+    difference: float = float("nan")
+    near: Floats = field(default_factory=lambda: _NO_SETS)
+    side: Floats = field(default_factory=lambda: _NO_SETS)
+    rules: Floats = field(default_factory=lambda: _NO_RULES)
+    turn: float = float("nan")
+    stride: float = float("nan")
+    weights: tuple[float, float] = (float("nan"), float("nan"))
+    guard: float = float("nan")
+    target: tuple[float, float] = (float("nan"), float("nan"))
+    hopeless: bool = False
+
+
+class Planner(Protocol):
+    """A local planner: one observation in, one decision out.
+
+    A planner lives for one episode and may keep a memory within it.
+    """
+
+    def decide(self, observation: Observation, /) -> Decision:
+        """Choose the next heading and step."""
+        ...

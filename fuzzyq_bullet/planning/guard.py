@@ -1,0 +1,98 @@
+"""The guard: no step is longer than what is free along the way that the robot will really take."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from fuzzyq_bullet.geometry import wrap_angle
+from fuzzyq_bullet.planning.base import Decision, Motion, Observation
+
+RESERVE = 0.02
+"""Free distance that is never used up (m): by so much a detection line may be too long where a
+corner stands between two of its rays."""
+NARROW = math.radians(2.0)
+"""Turns up to this stay within the margin of the one corridor along the new heading."""
+WIDEST = math.radians(90.0)
+"""Further round than this the robot does not get before it stands."""
+
+
+def guarded(decision: Decision, observation: Observation) -> Decision:
+    """Return the decision with its step, and if need be its turn, cut down to what is free.
+
+    The paper's point robot faces the new heading at once: one corridor along it is enough.
+    """
+    if observation.motion is not None:
+        return _guarded_on_wheels(decision, observation, observation.motion)
+    [free] = observation.sense((decision.heading,)).tolist()
+    return replace(decision, step=_usable(free, decision.step), guard=free)
+
+
+def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Motion) -> Decision:
+    """Guard a robot that comes round to its new heading on an arc, and stops late.
+
+    Every point of that arc up to a stop lies between the direction the robot faces and the new
+    heading, so a fan of corridors between the two covers it: the least of them is how far the robot
+    may be able to go. Where the fan is shorter somewhere than the robot now needs to stop, it may
+    not turn that far yet; it brakes first, and turns as it gets slower.
+    """
+    facing = observation.heading
+    turn = wrap_angle(decision.heading - facing)
+    coast = observation.turn_rate * abs(observation.turn_rate) / (2.0 * motion.turn_acceleration)
+    ways = _fan(turn, coast, _spacing(motion, observation.speed))
+    free = observation.sense([facing + way for way in ways]).tolist()
+
+    need = observation.speed * motion.period + motion.way_to_stop(observation.speed)
+    reach, heading, ahead = decision.reach, facing, free[0]
+    for index, (way, length) in enumerate(zip(ways, free, strict=True)):
+        passed_anyway = index == 0 or min(0.0, coast) <= way <= max(0.0, coast)
+        if not passed_anyway and RESERVE < need > length - RESERVE:
+            break  # this way and those beyond it are not to be had yet
+        reach = min(reach, length - RESERVE)
+        heading, ahead = facing + way, length
+    else:
+        heading, ahead = decision.heading, free[-1]
+    return replace(
+        decision,
+        heading=heading,
+        step=_usable(ahead, decision.step),
+        reach=max(0.0, reach),
+        guard=ahead,
+    )
+
+
+def _usable(free: float, step: float) -> float:
+    return max(0.0, min(step, free - RESERVE))
+
+
+def _fan(turn: float, coast: float, spacing: float) -> list[float]:
+    """Return the ways to sense (rad, from where the robot faces), the new heading last.
+
+    They cover the turn, and what the robot still turns of itself while it reverses its turn rate.
+    """
+    if max(abs(turn), abs(coast)) <= NARROW:
+        return [turn]
+    beyond = abs(coast) > abs(turn) or coast * turn < 0.0
+    within = max(-WIDEST, min(WIDEST, turn))
+    fan = [0.0, *(_spread(coast, spacing) if beyond else ()), *_spread(within, spacing)]
+    return fan if within == turn else [*fan, turn]
+
+
+def _spread(end: float, spacing: float) -> list[float]:
+    """Return evenly spaced ways from next to 0 up to ``end``."""
+    count = math.ceil(abs(end) / spacing)
+    return [end * k / count for k in range(1, count + 1)]
+
+
+def _spacing(motion: Motion, speed: float) -> float:
+    """Return the widest angle (rad) between neighbouring corridors that leaves no gap.
+
+    Halfway between two corridors of radius R, a disc of radius r at the end of its way s to a stop
+    stays within them while the law of cosines puts its foremost point, s + r away, within R of
+    the end of either.
+    """
+    fastest = min(motion.max_speed, max(0.0, speed) + motion.acceleration * motion.period)
+    way = max(fastest * motion.period + motion.way_to_stop(fastest), motion.margin)
+    front, wide = way + motion.radius, motion.radius + motion.margin
+    cosine = (front**2 + way**2 - wide**2) / (2.0 * front * way)
+    return 2.0 * math.acos(min(1.0, max(0.0, cosine)))
