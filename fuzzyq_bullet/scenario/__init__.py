@@ -1,0 +1,62 @@
+"""What a run is asked to do: models, files, checks, layouts."""
+
+from fuzzyq_bullet.scenario.checks import check, find_conflicts
+from fuzzyq_bullet.scenario.files import (
+    bundled_scenarios,
+    dump_scenario,
+    find_scenario,
+    load_scenario,
+    parse_scenario,
+    save_scenario,
+)
+from fuzzyq_bullet.scenario.layouts import realise
+from fuzzyq_bullet.scenario.models import (
+    MAX_OBSTACLES,
+    MIN_RADIUS,
+    ROBOT_RADIUS,
+    Arena,
+    Box,
+    Cylinder,
+    Drive,
+    Expect,
+    Goal,
+    Limits,
+    Obstacle,
+    OutcomeName,
+    Random,
+    Robot,
+    Scenario,
+    Start,
+)
+from fuzzyq_bullet.scenario.options import with_options
+from fuzzyq_bullet.scenario.schema import scenario_schema
+
+__all__ = [
+    "MAX_OBSTACLES",
+    "MIN_RADIUS",
+    "ROBOT_RADIUS",
+    "Arena",
+    "Box",
+    "Cylinder",
+    "Drive",
+    "Expect",
+    "Goal",
+    "Limits",
+    "Obstacle",
+    "OutcomeName",
+    "Random",
+    "Robot",
+    "Scenario",
+    "Start",
+    "bundled_scenarios",
+    "check",
+    "dump_scenario",
+    "find_conflicts",
+    "find_scenario",
+    "load_scenario",
+    "parse_scenario",
+    "realise",
+    "save_scenario",
+    "scenario_schema",
+    "with_options",
+]

@@ -1,0 +1,137 @@
+"""What cannot be right about a scenario although every value is: overlaps, walls, no way to start.
+
+Algorithm 2 exists because "the starting point or end point may overlap with obstacles"; this is
+its test, for obstacles from any source.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, ROBOT_RADIUS, Box, Obstacle, Scenario
+from fuzzyq_bullet.scenario.problems import MAX_SHOWN, Loc, key_path
+
+Conflict: TypeAlias = tuple[Loc, str]
+
+TOUCH = 1e-6
+"""Things closer than this (m) touch, and the physics counts a touch as a collision."""
+
+
+def find_conflicts(scenario: Scenario) -> list[Conflict]:
+    """Return what stands in the way of running the scenario: places and messages, none if well.
+
+    Conflicts are: start or goal outside the arena; the robot's disc at the start, or at the centre
+    of the goal, touching a wall or an obstacle; a start within the goal (a run of no steps, with
+    no shortest path to measure it by); an obstacle wholly outside the walls; random obstacles that
+    are too large for the arena or too many. Obstacles may overlap each other and poke through
+    walls.
+    """
+    return [
+        *_places(scenario),
+        *_obstacles(scenario),
+        *_random(scenario),
+    ]
+
+
+def check(scenario: Scenario) -> None:
+    """Make sure that a scenario can be run.
+
+    Raises:
+        UserError: If it cannot, with one line for each conflict.
+    """
+    conflicts = find_conflicts(scenario)
+    if conflicts:
+        lines = [f"{scenario.name}: {key_path(loc)}: {why}" for loc, why in conflicts[:MAX_SHOWN]]
+        if len(conflicts) > MAX_SHOWN:
+            lines.append(f"{scenario.name}: and {len(conflicts) - MAX_SHOWN} more")
+        raise UserError(*lines)
+
+
+def _places(scenario: Scenario) -> list[Conflict]:
+    found: list[Conflict] = []
+    width, depth = scenario.arena.size
+    for key, place in (("start", scenario.start), ("goal", scenario.goal)):
+        x, y = place.position
+        gap = min(x, width - x, y, depth - y)
+        if gap < 0.0:
+            found.append(
+                ((key, "position"), f"({x:g}, {y:g}) is outside the arena, {width:g} × {depth:g} m")
+            )
+        elif scenario.arena.walls and gap <= ROBOT_RADIUS + TOUCH:
+            found.append(((key, "position"), f"is {gap:.3g} m from a wall; {_NEED}"))
+    apart = float(np.hypot(*np.subtract(scenario.start.position, scenario.goal.position)))
+    if apart <= scenario.goal.radius:
+        found.append(
+            (
+                ("start", "position"),
+                f"is within the goal already: {apart:.3g} m from its centre, radius "
+                f"{scenario.goal.radius:g} m",
+            )
+        )
+    return found
+
+
+def _obstacles(scenario: Scenario) -> list[Conflict]:
+    field = Field.of(scenario.obstacles)
+    by_index: dict[int, Conflict] = {}
+    for name, place in (("goal", scenario.goal), ("start", scenario.start)):
+        x, y = place.position
+        gaps = field.distances(place.position)
+        for i in np.flatnonzero(gaps <= ROBOT_RADIUS + TOUCH).tolist():
+            where = f"{-gaps[i]:.3g} m inside it" if gaps[i] < 0 else f"{gaps[i]:.3g} m from it"
+            message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; {_NEED}"
+            by_index[i] = (("obstacles", i), message)
+    if scenario.arena.walls:
+        width, depth = scenario.arena.size
+        for i, item in enumerate(scenario.obstacles):
+            if _is_outside(item, width, depth):
+                by_index[i] = (
+                    ("obstacles", i, "position"),
+                    f"is wholly outside the walls of the arena, {width:g} × {depth:g} m",
+                )
+    return [by_index[i] for i in sorted(by_index)]
+
+
+def _random(scenario: Scenario) -> list[Conflict]:
+    random = scenario.random
+    if random is None or random.count == 0:
+        return []
+    found: list[Conflict] = []
+    least = min(scenario.arena.size)
+    if 2.0 * random.radius > least:
+        found.append(
+            (("random", "radius"), f"must be at most {least / 2:g} to fit, got {random.radius:g}")
+        )
+    room = MAX_OBSTACLES - len(scenario.obstacles)
+    if random.count > room:
+        message = f"must be at most {room} beside the listed obstacles, got {random.count}"
+        found.append((("random", "count"), message))
+    return found
+
+
+def _is_outside(item: Obstacle, width: float, depth: float) -> bool:
+    """Tell whether no part of an obstacle is inside the arena (separating axes, exactly)."""
+    x, y = item.position
+    beside_x, beside_y = max(-x, x - width, 0.0), max(-y, y - depth, 0.0)
+    if not isinstance(item, Box):
+        return bool(np.hypot(beside_x, beside_y) >= item.radius)
+    if beside_x == 0.0 and beside_y == 0.0:
+        return False
+    c, s = np.cos(item.yaw), np.sin(item.yaw)
+    hx, hy = item.size[0] / 2, item.size[1] / 2
+    ax, ay = width / 2, depth / 2
+    dx, dy = x - ax, y - ay
+    gaps = (
+        abs(dx) - ax - hx * abs(c) - hy * abs(s),
+        abs(dy) - ay - hx * abs(s) - hy * abs(c),
+        abs(dx * c + dy * s) - hx - ax * abs(c) - ay * abs(s),
+        abs(dy * c - dx * s) - hy - ax * abs(s) - ay * abs(c),
+    )
+    return bool(max(gaps) >= 0.0)
+
+
+_NEED = f"the robot needs more than {ROBOT_RADIUS:g} m"

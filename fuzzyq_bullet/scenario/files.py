@@ -1,0 +1,227 @@
+"""Scenario files: read with a line number for every mistake, written, and the bundled ones."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import yaml
+from pydantic import ValidationError
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import written_beside
+from fuzzyq_bullet.resources import data_folder
+from fuzzyq_bullet.scenario.checks import find_conflicts
+from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, Scenario
+from fuzzyq_bullet.scenario.problems import (
+    MAX_SHOWN,
+    MAX_WORDED,
+    Loc,
+    Problem,
+    did_you_mean,
+    key_path,
+    problems_of,
+    shorten,
+)
+from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
+
+if TYPE_CHECKING:
+    import os
+
+Source: TypeAlias = "str | os.PathLike[str]"
+
+MAX_BYTES = 2_000_000
+"""Largest scenario file: 10 000 boxes, one a line, take about 0.8 MB."""
+
+
+def load_scenario(source: Source) -> Scenario:
+    """Read a scenario from a file, or a bundled one by name, and check that it can be run.
+
+    Args:
+        source: A path, or the name of a bundled scenario such as ``paper-50``. A file of that
+            name wins.
+
+    Raises:
+        UserError: If it cannot be read or is wrong; one line a mistake:
+            ``path:line: key.path: what is wrong; what is allowed``.
+    """
+    path = find_scenario(source)
+    return parse_scenario(_read(path), str(path))
+
+
+def parse_scenario(text: str, where: str = "scenario") -> Scenario:
+    """Read a scenario from YAML text and check that it can be run.
+
+    Args:
+        text: The YAML document.
+        where: What to call it in messages, usually its path.
+
+    Raises:
+        UserError: If it is wrong; one line a mistake.
+    """
+    if len(text) > MAX_BYTES:
+        raise UserError(f"{where}: too large; a scenario has at most {MAX_BYTES} bytes")
+    tree = read_tree(text, where)
+    if not isinstance(tree.data, dict):
+        raise UserError(
+            f"{where}:{tree.line}: expected a mapping with the keys name, start and goal, "
+            f"got {shorten(tree.data)}"
+        )
+    given = tree.data.get("obstacles")
+    if isinstance(given, list) and len(given) > MAX_OBSTACLES:  # not worth a look at each
+        line = tree.line_of("obstacles")
+        raise UserError(
+            f"{where}:{line}: obstacles: must have at most {MAX_OBSTACLES} values, got {len(given)}"
+        )
+    more = 0
+    try:
+        scenario = Scenario.model_validate(tree.data)
+    except ValidationError as error:
+        problems = problems_of(error, tree.data)
+        more = max(0, error.error_count() - MAX_WORDED)
+    else:
+        problems = [Problem(loc, message) for loc, message in find_conflicts(scenario)]
+        if not problems:
+            return scenario
+    raise UserError(*_lines(problems, more, tree, where))
+
+
+def find_scenario(source: Source) -> Path:
+    """Return the path of a scenario given as a path or as the name of a bundled one.
+
+    Raises:
+        UserError: If there is neither, or the path is not that of a regular file.
+    """
+    path = Path(source)
+    try:
+        if path.is_file():
+            return path
+        bundled = {p.stem: p for p in sorted(data_folder("scenarios").glob("*.yaml"))}
+        if str(source) in bundled:
+            return bundled[str(source)]
+        if path.is_dir():
+            raise UserError(f"{path}: is a folder; give a scenario file")
+        if path.exists():
+            raise UserError(f"{path}: is not a regular file; give a scenario file")
+    except (OSError, ValueError) as error:  # no access, a name too long, a null byte
+        reason = getattr(error, "strerror", None) or error
+        raise UserError(f"{shorten(str(source))}: cannot be read: {reason}") from error
+    hint = did_you_mean(path.stem, bundled)
+    raise UserError(
+        f"{path}: there is no such file and no bundled scenario of that name; "
+        f"{hint}bundled: {', '.join(bundled)}"
+    )
+
+
+def bundled_scenarios() -> dict[str, str]:
+    """Return the description of each bundled scenario, by name, in alphabetical order."""
+    paths = sorted(data_folder("scenarios").glob("*.yaml"))
+    return {path.stem: load_scenario(path).description for path in paths}
+
+
+def dump_scenario(scenario: Scenario) -> str:
+    """Return a scenario as YAML text that ``parse_scenario`` reads back as its equal.
+
+    Every value is written, defaults too, so that the file means the same in a version whose
+    defaults differ.
+    """
+    data = scenario.model_dump(mode="json")
+    lines: list[str] = []
+    for key, value in data.items():
+        if key == "obstacles" and value:
+            lines.append("obstacles:")
+            lines.extend(f"  - {_flow(item)}" for item in value)
+        elif value is not None:
+            lines.append(f"{key}: {_flow(value)}")
+    return "\n".join(lines) + "\n"
+
+
+def save_scenario(scenario: Scenario, path: Source) -> None:
+    """Write a scenario to a file, whole or not at all.
+
+    Raises:
+        UserError: If the file cannot be written.
+    """
+    with written_beside(Path(path)) as part:
+        part.write_text(dump_scenario(scenario), encoding="utf-8")
+
+
+def _read(path: Path) -> str:
+    try:
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {error.strerror or error}") from error
+    if len(content) > MAX_BYTES:
+        raise UserError(f"{path}: too large; a scenario has at most {MAX_BYTES} bytes")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise UserError(f"{path}:{line}: is not UTF-8 text") from error
+
+
+def _lines(problems: list[Problem], more: int, tree: Node, where: str) -> list[str]:
+    """Return the printed lines of the problems, in the order of the file's lines.
+
+    ``more`` is the number of problems beside those given.
+    """
+    told = []
+    for problem in problems:
+        line, shown = _locate(problem, tree)
+        told.append((line, f"{where}:{line}: {key_path(shown)}: {problem.message}"))
+    told.sort(key=lambda entry: entry[0])
+    lines = [text for _, text in told[:MAX_SHOWN]]
+    more += max(0, len(told) - MAX_SHOWN)
+    if more:
+        lines.append(f"{where}: and {more} more")
+    return lines
+
+
+def _locate(problem: Problem, tree: Node) -> tuple[int, Loc]:
+    """Return the line of a problem and its path in the file.
+
+    A key that is absent is shown behind the mapping that should hold it, on that one's line.
+    Parts that pydantic adds and the file does not have are passed over.
+    """
+    node, line, shown = tree, tree.line, ()  # type: Node, int, Loc
+    for i, part in enumerate(problem.loc):
+        if part in node.children:
+            line = node.line_of(part)
+            node = node.children[part]
+            shown += (part,)
+        elif problem.missing and i == len(problem.loc) - 1:
+            shown += (part,)
+    return line, shown
+
+
+_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+_DUMPER: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
+
+def _flow(value: Any) -> str:
+    """Return plain data as one line of YAML that YAML 1.1 readers understand alike."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {_flow(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_flow(item) for item in value) + "]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        text = repr(value)
+        return text.replace("e", ".0e") if "e" in text and "." not in text else text
+    if value is None:
+        return "null"
+    if isinstance(value, str):
+        return _text(value)
+    return str(value)
+
+
+def _text(value: str) -> str:
+    if _PLAIN.fullmatch(value) and yaml.safe_load(value) == value:  # not yes, null, on ...
+        return value
+    dumped: str = yaml.dump(
+        value, Dumper=_DUMPER, default_style='"', allow_unicode=True, width=1_000_000
+    )
+    return dumped.strip()

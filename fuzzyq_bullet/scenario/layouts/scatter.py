@@ -1,0 +1,115 @@
+"""Obstacles scattered at random: Algorithm 2 of the paper, with its intent restored.
+
+As printed, Algorithm 2 deletes obstacles while it loops over them and leaves fewer than asked for,
+its distance lacks the root, its intervals are empty when start and goal share a coordinate, and it
+protects the goal only in a corner. What it is for (Section 4.1, Eq. 23): no obstacle overlaps the
+start or the goal. Here the count is exact, both discs keep a margin, every obstacle lies wholly
+within the arena, and what cannot be done is said.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree  # type: ignore[import-untyped]
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.scenario.checks import TOUCH
+from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, ROBOT_RADIUS, Cylinder, Random, Scenario
+
+Floats: TypeAlias = NDArray[np.float64]
+
+_BATCH = 1024
+"""Places drawn at once. Fixed, so that a larger count begins with the places of a smaller one."""
+_DECIMALS = 4
+_MAX_IDLE = 50
+"""Batches in a row without a single place found after which there is taken to be none."""
+_DENSEST = math.pi / math.sqrt(12.0)
+"""Share of the plane that equal discs can cover at most without overlap."""
+
+
+def scatter(scenario: Scenario, rng: np.random.Generator) -> tuple[Cylinder, ...]:
+    """Draw the cylinders that ``scenario.random`` asks for, exactly as many.
+
+    Args:
+        scenario: Its start, goal, arena and listed obstacles are heeded.
+        rng: Where the places come from.
+
+    Raises:
+        UserError: If so many cannot be placed.
+    """
+    wanted = scenario.random
+    if wanted is None or wanted.count == 0:
+        return ()
+    if len(scenario.obstacles) + wanted.count > MAX_OBSTACLES:
+        raise UserError(
+            f"{scenario.name}: random.count: with the listed obstacles it makes more than "
+            f"{MAX_OBSTACLES}"
+        )
+    places = np.empty((0, 2))
+    idle = batches = 0
+    hopeless = not wanted.overlap and _too_dense(wanted, scenario.arena.size)
+    while len(places) < wanted.count:
+        if hopeless or idle > _MAX_IDLE or batches > _MAX_IDLE + wanted.count // 20:
+            raise UserError(
+                f"{scenario.name}: random.count: cannot place {wanted.count} obstacles of radius "
+                f"{wanted.radius:g} in {scenario.arena.size[0]:g} × {scenario.arena.size[1]:g} m "
+                "clear of start and goal; use fewer, smaller ones or a smaller margin"
+                + ("" if wanted.overlap else ", or allow overlap")
+            )
+        fresh = _free_of_one_another(_draw(scenario, wanted, rng), places, wanted)
+        places = np.concatenate([places, fresh])
+        idle = 0 if len(fresh) else idle + 1
+        batches += 1
+    return tuple(
+        Cylinder(shape="cylinder", position=(x, y), radius=wanted.radius)
+        for x, y in places[: wanted.count].tolist()
+    )
+
+
+def _draw(scenario: Scenario, wanted: Random, rng: np.random.Generator) -> Floats:
+    """Draw one batch; return, shape (K, 2), the places that suit the arena, start and goal."""
+    size = np.array(scenario.arena.size)
+    r = wanted.radius
+    low, high = np.minimum(r, size / 2), np.maximum(size - r, size / 2)
+    drawn = rng.uniform(low, high, (_BATCH, 2)).round(_DECIMALS)
+    fits = np.all((drawn >= r - TOUCH) & (drawn <= size - r + TOUCH), axis=1)
+    kept_clear = (
+        (scenario.start.position, ROBOT_RADIUS),
+        (scenario.goal.position, max(scenario.goal.radius, ROBOT_RADIUS)),
+    )
+    for centre, radius in kept_clear:
+        apart = np.linalg.norm(drawn - centre, axis=1)
+        fits &= apart > r + radius + wanted.margin + 2 * TOUCH
+    places: Floats = drawn[fits]
+    if not wanted.overlap and scenario.obstacles:
+        places = places[Field.of(scenario.obstacles).clearance(places) >= r]
+    return places
+
+
+def _free_of_one_another(drawn: Floats, places: Floats, wanted: Random) -> Floats:
+    """Return those of ``drawn`` that overlap neither ``places`` nor an earlier one of them."""
+    if wanted.overlap or not len(drawn):
+        return drawn
+    if len(places):
+        nearest, _ = KDTree(places).query(drawn)
+        drawn = drawn[nearest >= 2 * wanted.radius]
+    if not len(drawn):
+        return drawn
+    keep = np.ones(len(drawn), dtype=bool)
+    pairs = KDTree(drawn).query_pairs(2 * wanted.radius, output_type="ndarray")
+    for first, second in sorted(map(tuple, pairs.tolist())):
+        if keep[first]:
+            keep[second] = False
+    return drawn[keep]
+
+
+def _too_dense(wanted: Random, size: tuple[float, float]) -> bool:
+    """Tell whether discs without overlap would need more room than there is, however packed."""
+    # A strip of one radius around makes up for the discs at the edge (Oler's inequality).
+    width, depth = (side + 2 * wanted.radius for side in size)
+    return wanted.count * math.pi * wanted.radius**2 > _DENSEST * width * depth

@@ -1,0 +1,214 @@
+"""What a run is asked to do: the scenario file as typed, validated, immutable models.
+
+Metres, seconds and radians throughout; the arena's lower left corner is the origin, x to the
+right and y up (REP 103). Geometry that only makes sense together (overlaps, walls) is checked in
+``scenario.checks``; files and line numbers are the business of ``scenario.files``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    SerializeAsAny,
+    Strict,
+    ValidationError,
+)
+from pydantic_core import PydanticCustomError
+
+from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
+from fuzzyq_bullet.planning.settings import PlannerSettings
+
+Number: TypeAlias = Annotated[float, Strict(), Field(allow_inf_nan=False)]
+Coordinate: TypeAlias = Annotated[Number, Field(ge=-1000.0, le=1000.0)]
+Length: TypeAlias = Annotated[Number, Field(gt=0.0, le=1000.0)]
+Angle: TypeAlias = Annotated[Number, Field(ge=-100.0, le=100.0)]
+Count: TypeAlias = Annotated[int, Strict()]
+Flag: TypeAlias = Annotated[bool, Strict()]
+Point: TypeAlias = tuple[Coordinate, Coordinate]
+Drive: TypeAlias = Literal["wheels", "kinematic"]
+OutcomeName: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
+
+MAX_OBSTACLES = 10_000
+ROBOT_RADIUS = 0.2
+"""Radius of the robot's disc (m): one unit of the paper; the shape in ``assets/robot.urdf``."""
+MIN_RADIUS = 0.025
+"""Nothing thinner than twice this is sure to be hit by a ray of a detection line (m)."""
+
+
+class Model(BaseModel):
+    """Base of all scenario models: immutable, and unknown keys are mistakes."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Arena(Model):
+    """The rectangle the run takes place in."""
+
+    size: tuple[Length, Length] = Field(default=(10.0, 10.0), description="Width and depth (m).")
+    walls: Flag = Field(default=True, description="Whether walls stand on its four edges.")
+
+
+class Start(Model):
+    """Where the robot starts."""
+
+    position: Point = Field(description="Centre of the robot (m).")
+    heading: Angle | None = Field(
+        default=None,
+        description="Direction it faces (rad), anticlockwise from x; default: to the goal.",
+    )
+
+
+class Goal(Model):
+    """Where the robot must stop."""
+
+    position: Point = Field(description="Centre of the goal (m).")
+    radius: Annotated[Number, Field(ge=0.05, le=10.0)] = Field(
+        default=0.2, description="The robot's centre must come to rest within it (m)."
+    )
+
+
+class Robot(Model):
+    """Limits of the robot's motion. Its shape is that of ``assets/robot.urdf``."""
+
+    max_speed: Annotated[Number, Field(ge=0.05, le=1.0)] = Field(
+        default=0.6, description="Greatest speed (m/s)."
+    )
+    max_turn_rate: Annotated[Number, Field(ge=0.2, le=3.0)] = Field(
+        default=2.0, description="Greatest turn rate (rad/s)."
+    )
+    acceleration: Annotated[Number, Field(ge=0.1, le=2.0)] = Field(
+        default=1.0, description="Greatest change of speed, up or down (m/s²)."
+    )
+    turn_acceleration: Annotated[Number, Field(ge=0.5, le=10.0)] = Field(
+        default=6.0, description="Greatest change of the turn rate (rad/s²)."
+    )
+
+
+class Cylinder(Model):
+    """An upright cylinder."""
+
+    shape: Literal["cylinder"]
+    position: Point = Field(description="Centre (m).")
+    radius: Annotated[Number, Field(ge=MIN_RADIUS, le=1000.0)] = Field(description="Radius (m).")
+
+
+class Box(Model):
+    """An upright box."""
+
+    shape: Literal["box"]
+    position: Point = Field(description="Centre (m).")
+    size: tuple[
+        Annotated[Number, Field(ge=2 * MIN_RADIUS, le=1000.0)],
+        Annotated[Number, Field(ge=2 * MIN_RADIUS, le=1000.0)],
+    ] = Field(description="Length along its own x and y (m).")
+    yaw: Angle = Field(default=0.0, description="Turn of its own x axis (rad), anticlockwise.")
+
+
+Obstacle: TypeAlias = Annotated[Cylinder | Box, Field(discriminator="shape")]
+
+
+class Random(Model):
+    """Obstacles at random places: Algorithm 2, with its intent restored."""
+
+    count: Annotated[Count, Field(ge=0, le=MAX_OBSTACLES)] = Field(description="How many.")
+    radius: Annotated[Number, Field(ge=MIN_RADIUS, le=1000.0)] = Field(
+        default=0.2, description="Radius of each (m)."
+    )
+    margin: Annotated[Number, Field(ge=0.0, le=100.0)] = Field(
+        default=0.1, description="Least gap to the robot at the start and to the goal disc (m)."
+    )
+    overlap: Flag = Field(default=True, description="Whether obstacles may overlap one another.")
+
+
+class Limits(Model):
+    """When a run is given up."""
+
+    time: Annotated[Number, Field(gt=0.0, le=3600.0)] = Field(
+        default=120.0, description="Simulated time (s)."
+    )
+    steps: Annotated[Count, Field(ge=1, le=1_000_000)] = Field(
+        default=3000, description="Decisions of the planner: M_s of Step 12."
+    )
+
+
+class Expect(Model):
+    """What CI holds the run to."""
+
+    outcome: OutcomeName = "goal"
+    min_clearance: Annotated[Number, Field(ge=0.0)] | None = Field(
+        default=None, description="Least distance to anything (m)."
+    )
+    max_time: Annotated[Number, Field(gt=0.0)] | None = Field(
+        default=None, description="Longest simulated time (s)."
+    )
+
+
+def _default_planner() -> PlannerSettings:
+    return settings_for(DEFAULT_PLANNER).model_validate({"name": DEFAULT_PLANNER})
+
+
+def _choose_planner(value: Any) -> Any:
+    """Turn a name, or parameters with or without one, into the settings of that planner.
+
+    Mistakes among the parameters come out of ``model_validate`` with their own places, which
+    pydantic puts behind ``planner``.
+    """
+    if value is None:
+        return _default_planner()
+    if isinstance(value, str):
+        value = {"name": value}
+    if isinstance(value, PlannerSettings):
+        if value.name in planner_names() and isinstance(value, settings_for(value.name)):
+            return value
+        value = value.model_dump()
+    if not isinstance(value, Mapping):
+        return value  # a mistake that pydantic names
+    name = value.get("name", DEFAULT_PLANNER)
+    if name not in planner_names():
+        mistake = PydanticCustomError(
+            "unknown_planner",
+            "must be one of {allowed}",
+            {"allowed": list(planner_names())},
+        )
+        raise ValidationError.from_exception_data(
+            "planner", [{"type": mistake, "loc": ("name",), "input": name}]
+        )
+    return settings_for(name).model_validate({**value, "name": name})
+
+
+class Scenario(Model):
+    """One run, as asked for."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,99}$")] = Field(
+        description="Names the files of the run: letters, digits, dot, dash, underscore."
+    )
+    description: Annotated[str, Field(max_length=2000)] = ""
+    seed: Annotated[Count, Field(ge=0, le=2**63 - 1)] = 0
+    arena: Arena = Arena()
+    start: Start
+    goal: Goal
+    robot: Robot = Robot()
+    planner: Annotated[SerializeAsAny[PlannerSettings], BeforeValidator(_choose_planner)] = Field(
+        default_factory=_default_planner,
+        description="A planner's name, or its parameters with or without the name.",
+    )
+    drive: Drive = "wheels"
+    obstacles: tuple[Obstacle, ...] = Field(default=(), max_length=MAX_OBSTACLES)
+    random: Random | None = None
+    limits: Limits = Limits()
+    expect: Expect = Expect()
+
+    def start_heading(self) -> float:
+        """Return the heading at the start (rad); towards the goal when none is given."""
+        if self.start.heading is not None:
+            return self.start.heading
+        dx = self.goal.position[0] - self.start.position[0]
+        dy = self.goal.position[1] - self.start.position[1]
+        return math.atan2(dy, dx)

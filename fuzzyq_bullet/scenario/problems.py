@@ -1,0 +1,230 @@
+"""What is wrong with a scenario, in words: pydantic's errors, with what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+import typing
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from pydantic import BaseModel, ValidationError
+
+from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, settings_for
+from fuzzyq_bullet.scenario.models import Obstacle, Scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+Loc: TypeAlias = tuple[str | int, ...]
+
+MAX_WORDED = 1000
+"""Most mistakes put into words, so that a file of nothing else does not keep anyone waiting."""
+MAX_SHOWN = 10
+"""Most problems of one file that are told; the rest are counted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One mistake.
+
+    Attributes:
+        loc: The keys and indices that lead to it, as pydantic gives them.
+        message: What is wrong and what is allowed.
+        missing: Whether the last key of ``loc`` is one that should be there.
+    """
+
+    loc: Loc
+    message: str
+    missing: bool = False
+
+
+def key_path(loc: Iterable[str | int]) -> str:
+    """Return ``obstacles[3].radius`` for ``("obstacles", 3, "radius")``."""
+    path = ""
+    for part in loc:
+        if isinstance(part, int):
+            path += f"[{part}]"
+        else:
+            shown = part if part.isidentifier() and len(part) <= 60 else shorten(part)
+            path += f".{shown}" if path else shown
+    return path
+
+
+def shorten(value: Any) -> str:
+    """Return a value as it would be written in the file, at most about 60 characters long."""
+    match value:
+        case None:
+            return "nothing"
+        case bool():
+            return "true" if value else "false"
+        case float() if not math.isfinite(value):
+            return "nan" if math.isnan(value) else "inf" if value > 0 else "-inf"
+        case dict():
+            return "a mapping"
+        case list() | tuple():
+            if len(value) > 6 or any(isinstance(v, dict | list | tuple) for v in value):
+                return f"a list of {len(value)}"
+            return "[" + ", ".join(shorten(v) for v in value) + "]"
+        case BaseModel():
+            return f"a {type(value).__name__}"
+    text = repr(value[:80]) if isinstance(value, str) else repr(value)
+    return text if len(text) <= 60 else f"{text[:56]} ..."
+
+
+def did_you_mean(word: Any, allowed: Iterable[str]) -> str:
+    """Return ``did you mean 'radius'? `` or nothing, for a word that is not allowed."""
+    close = difflib.get_close_matches(str(word)[:100], list(allowed), n=1)
+    return f"did you mean {close[0]!r}? " if close else ""
+
+
+def problems_of(error: ValidationError, data: Any) -> list[Problem]:
+    """Return what is wrong with a scenario, each mistake once, the first ``MAX_WORDED`` in words.
+
+    Args:
+        error: What ``Scenario.model_validate(data)`` raised.
+        data: The plain data it was given.
+    """
+    found: dict[Loc, Problem] = {}
+    for item in error.errors(include_url=False)[:MAX_WORDED]:
+        problem = _problem(dict(item), data)
+        if problem.loc not in found or _is_short_list(dict(item)):
+            found[problem.loc] = problem
+    return list(found.values())
+
+
+def _is_short_list(error: dict[str, Any]) -> bool:
+    """Tell a list with too few items, of which pydantic reports each absent item."""
+    return error["type"] == "missing" and isinstance(error["loc"][-1], int)
+
+
+def _problem(error: dict[str, Any], data: Any) -> Problem:
+    loc = _without_tag(tuple(error["loc"]))
+    kind, value, context = error["type"], error["input"], error.get("ctx", {})
+    if _is_short_list(error):
+        return Problem(loc[:-1], f"needs {int(loc[-1]) + 1} values, got {shorten(value)}")
+    if kind == "missing":
+        return Problem(loc, "is required", missing=True)
+    if kind == "extra_forbidden":
+        return Problem(
+            loc, _refusal("unknown key", loc[-1], _keys_at(tuple(error["loc"][:-1]), data))
+        )
+    if kind == "union_tag_not_found":
+        shapes = ", ".join(_SHAPES)
+        return Problem((*loc, "shape"), f"is required; allowed: {shapes}", missing=True)
+    if kind == "union_tag_invalid":
+        shape = context["tag"]
+        return Problem((*loc, "shape"), _refusal(f"no shape {shorten(shape)}", shape, _SHAPES))
+    if kind == "unknown_planner":
+        what = f"no planner {shorten(value)}"
+        return Problem(loc, _refusal(what, value, context["allowed"]))
+    if kind == "literal_error":
+        allowed = re.findall("'([^']*)'", context["expected"])
+        return Problem(loc, _refusal(f"got {shorten(value)}", value, allowed))
+    say = _WORDING.get(kind)
+    return Problem(loc, say(value, context) if say else _plain(error["msg"]))
+
+
+def _without_tag(loc: Loc) -> Loc:
+    """Drop the shape that pydantic puts behind an obstacle's index."""
+    return loc[:2] + loc[3:] if loc[0] == "obstacles" and loc[2:3] and loc[2] in _SHAPES else loc
+
+
+def _refusal(what: str, word: Any, allowed: Sequence[str]) -> str:
+    return f"{what}; {did_you_mean(word, allowed)}allowed: {', '.join(allowed)}"
+
+
+def _plain(message: str) -> str:
+    """Return pydantic's own words, or a validator's, on one line."""
+    return " ".join(message.removeprefix("Value error, ").split())
+
+
+def _expected(what: str) -> Callable[[Any, dict[str, Any]], str]:
+    return lambda value, context: f"expected {what}, got {shorten(value)}"
+
+
+def _bound(words: str, limit: str) -> Callable[[Any, dict[str, Any]], str]:
+    def say(value: Any, context: dict[str, Any]) -> str:
+        bound = context[limit]
+        shown = f"{bound:g}" if isinstance(bound, float) else str(bound)
+        return f"must be {words} {shown}, got {shorten(value)}"
+
+    return say
+
+
+def _length(value: Any, context: dict[str, Any]) -> str:
+    bound = context.get("max_length", context.get("min_length"))
+    limit = "at most" if "max_length" in context else "at least"
+    got = context.get("actual_length") or "more"  # pydantic stops counting a long one
+    return f"must have {limit} {bound} values, got {got}"
+
+
+_WORDING: dict[str, Callable[[Any, dict[str, Any]], str]] = {
+    "float_type": _expected("a number"),
+    "float_parsing": _expected("a number"),
+    "finite_number": lambda value, context: f"must be finite, got {shorten(value)}",
+    "int_type": _expected("a whole number"),
+    "int_parsing": _expected("a whole number"),
+    "int_from_float": _expected("a whole number"),
+    "int_parsing_size": _expected("a smaller whole number"),
+    "bool_type": _expected("true or false"),
+    "bool_parsing": _expected("true or false"),
+    "string_type": lambda value, context: f"expected text, got {shorten(value)}; put it in quotes",
+    "string_unicode": lambda value, context: "must be text that can be written as UTF-8",
+    "string_too_long": lambda value, context: (
+        f"must have at most {context['max_length']} characters, got {len(value)}"
+    ),
+    "string_pattern_mismatch": lambda value, context: (
+        f"got {shorten(value)}; allowed: letters, digits, '.', '-' and '_', at most 100, "
+        "beginning with a letter or digit"
+    ),
+    "tuple_type": _expected("a list"),
+    "list_type": _expected("a list"),
+    "model_type": _expected("a mapping (key: value)"),
+    "model_attributes_type": _expected("a mapping (key: value)"),
+    "dict_type": _expected("a mapping (key: value)"),
+    "too_long": _length,
+    "too_short": _length,
+    "greater_than": _bound("more than", "gt"),
+    "greater_than_equal": _bound("at least", "ge"),
+    "less_than": _bound("less than", "lt"),
+    "less_than_equal": _bound("at most", "le"),
+}
+
+_SHAPES = tuple(
+    shape
+    for kind in typing.get_args(typing.get_args(Obstacle)[0])
+    for shape in typing.get_args(kind.model_fields["shape"].annotation)
+)
+
+
+def _keys_at(loc: Loc, data: Any) -> list[str]:
+    """Return the keys allowed in the mapping that ``loc`` leads to."""
+    here: list[type[BaseModel]] = [Scenario]
+    if loc[:1] == ("planner",):
+        given = data.get("planner") if isinstance(data, dict) else None
+        name = given.get("name", DEFAULT_PLANNER) if isinstance(given, dict) else given
+        here, loc = [settings_for(str(name))], loc[1:]
+    for part in loc:
+        inner = [
+            found
+            for kind in here
+            if isinstance(part, str) and part in kind.model_fields
+            for found in _models_in(kind.model_fields[part].annotation)
+        ]
+        tagged = [kind for kind in here if part in _tags(kind)]
+        here = inner or tagged or here
+    return list(dict.fromkeys(key for kind in here for key in kind.model_fields))
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for inner in typing.get_args(annotation):
+        yield from _models_in(inner)
+
+
+def _tags(kind: type[BaseModel]) -> tuple[Any, ...]:
+    shape = kind.model_fields.get("shape")
+    return typing.get_args(shape.annotation) if shape else ()
