@@ -1,0 +1,83 @@
+"""The paper's own point robot: each decision is one jump of Eq. 17, exactly."""
+
+from __future__ import annotations
+
+import math
+
+from fuzzyq_bullet.drives.base import Tick, longest_step_time
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.physics.world import SENSOR_RANGE, World
+from fuzzyq_bullet.planning.base import Decision, Observation
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.trajectory import Collision
+
+
+class KinematicDriver:
+    """Moves by Eq. 17 in the physical world's geometry, sensing with the same rays.
+
+    The robot turns and stops at once. Contact is exact and swept: the disc touches whatever it
+    would meet on the straight line of the step, not only at its end.
+    """
+
+    def __init__(self, world: World, field: Field, scenario: Scenario) -> None:
+        self._world = world
+        self._field = field
+        self._goal = scenario.goal
+        self._step_time = longest_step_time(scenario.robot)
+        self.steps = 0
+        self.collision: Collision | None = None
+        self.arrived = False
+        self.ticks: list[Tick] = []
+        self._record(*scenario.start.position, scenario.start_heading(), 0.0)
+
+    def observe(self) -> Observation:
+        """Return the observation of a robot without inertia."""
+        now = self.ticks[-1]
+        position = (now.x, now.y)
+        return Observation(
+            time=now.time,
+            position=position,
+            heading=now.heading,
+            speed=0.0,
+            turn_rate=0.0,
+            goal=self._goal.position,
+            goal_radius=self._goal.radius,
+            range=SENSOR_RANGE,
+            sense=lambda headings: self._world.sense(position, headings),
+        )
+
+    def advance(self, decision: Decision) -> None:
+        """Move by one step (Eq. 17); stop at the first thing the disc would touch."""
+        now = self.ticks[-1]
+        step = decision.step
+        [free] = self._field.free_distance(
+            (now.x, now.y), decision.heading, ROBOT_RADIUS, step
+        ).tolist()
+        hit = free < step
+        moved = min(step, free)
+        x = now.x + moved * math.cos(decision.heading)
+        y = now.y + moved * math.sin(decision.heading)
+        self.steps += 1
+        self._record(x, y, decision.heading, moved / self._step_time)
+        if hit:
+            index, _ = self._field.nearest((x, y))
+            self.collision = Collision(
+                time=self.ticks[-1].time, point=(x, y), obstacle=index, normal_force=0.0
+            )
+        self.arrived = math.dist((x, y), self._goal.position) <= self._goal.radius
+
+    def _record(self, x: float, y: float, heading: float, speed: float) -> None:
+        clearance = float(self._field.clearance([[x, y]])[0]) - ROBOT_RADIUS
+        self.ticks.append(
+            Tick(
+                time=self.steps * self._step_time,
+                x=x,
+                y=y,
+                heading=heading,
+                speed=speed,
+                turn_rate=0.0,
+                left_wheel=0.0,
+                right_wheel=0.0,
+                clearance=max(0.0, clearance),
+            )
+        )

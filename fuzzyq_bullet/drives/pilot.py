@@ -1,0 +1,79 @@
+"""From a decision to a twist: one flowing motion that turns on the spot only when it must."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from fuzzyq_bullet.drives.base import longest_step_time
+from fuzzyq_bullet.geometry import wrap_angle
+from fuzzyq_bullet.planning.base import Decision
+from fuzzyq_bullet.scenario.models import Robot
+
+TURN_GAIN = 4.0
+"""Turn rate for an error of heading of 1 rad (1/s)."""
+TURN_ON_SPOT = math.radians(60.0)
+"""From this error of heading on the robot stands while it turns."""
+
+
+class Twist(NamedTuple):
+    """Forward speed (m/s) and turn rate (rad/s, positive to the left)."""
+
+    speed: float
+    turn_rate: float
+
+
+STILL = Twist(0.0, 0.0)
+
+
+class Pilot:
+    """Follows decisions within the robot's limits.
+
+    Args:
+        robot: The limits.
+        period: Time between two commands (s), through which the robot cannot react.
+    """
+
+    def __init__(self, robot: Robot, period: float) -> None:
+        self._robot = robot
+        self._period = period
+        self._step_time = longest_step_time(robot)
+
+    def twist(self, decision: Decision, heading: float, travelled: float) -> Twist:
+        """Return the twist to aim for.
+
+        Args:
+            decision: The decision in force.
+            heading: Where the robot faces now (rad).
+            travelled: Path driven since the decision (m), by which its reach has shrunk.
+        """
+        robot = self._robot
+        error = wrap_angle(decision.heading - heading)
+        stoppable = math.sqrt(robot.turn_acceleration * abs(error))
+        rate = min(TURN_GAIN * abs(error), robot.max_turn_rate, stoppable)
+        ahead = (math.cos(error) - math.cos(TURN_ON_SPOT)) / (1.0 - math.cos(TURN_ON_SPOT))
+        speed = min(
+            decision.step / self._step_time * max(0.0, ahead),
+            robot.max_speed,
+            self._stoppable_speed(decision.reach - travelled),
+        )
+        return Twist(speed, math.copysign(rate, error))
+
+    def _stoppable_speed(self, reach: float) -> float:
+        """Return the greatest speed from which the robot still stops within ``reach`` (m/s).
+
+        It drives on for one period before it brakes: v·τ + v²/(2a) = reach.
+        """
+        if reach <= 0.0:
+            return 0.0
+        lost = self._robot.acceleration * self._period
+        return math.sqrt(lost * lost + 2.0 * self._robot.acceleration * reach) - lost
+
+
+def ramp(now: Twist, wanted: Twist, robot: Robot, dt: float) -> Twist:
+    """Return the twist after ``dt`` seconds of moving towards the wanted one within the limits."""
+    dv, dw = robot.acceleration * dt, robot.turn_acceleration * dt
+    return Twist(
+        now.speed + max(-dv, min(dv, wanted.speed - now.speed)),
+        now.turn_rate + max(-dw, min(dw, wanted.turn_rate - now.turn_rate)),
+    )

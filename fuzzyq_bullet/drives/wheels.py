@@ -1,0 +1,137 @@
+"""The physical robot: decisions become wheel speeds, and the physics moves it."""
+
+from __future__ import annotations
+
+import math
+
+from fuzzyq_bullet.drives.base import Tick
+from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
+from fuzzyq_bullet.physics.robot import wheel_commands
+from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
+from fuzzyq_bullet.planning.base import Decision, Motion, Observation
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.trajectory import Collision
+
+COMMAND_STEPS = 3
+"""Physics steps between two wheel commands: 80 a second, so that the ramp of the acceleration
+limit never asks the tyres for a jump they cannot hold."""
+TICK_STEPS = 12
+"""Physics steps between two ticks: 20 a second."""
+DECISION_TICKS = 3
+"""Ticks between two decisions: 6.7 a second."""
+
+RESTING_SPEED = 0.01
+RESTING_TURN_RATE = 0.05
+
+
+class WheelsDriver:
+    """Drives a world's robot by its wheels, watching for contact after every physics step."""
+
+    def __init__(self, world: World, field: Field, scenario: Scenario) -> None:
+        self._world = world
+        self._field = field
+        self._goal = scenario.goal
+        self._limits = scenario.robot
+        self._motion = Motion(
+            max_speed=scenario.robot.max_speed,
+            max_turn_rate=scenario.robot.max_turn_rate,
+            acceleration=scenario.robot.acceleration,
+            turn_acceleration=scenario.robot.turn_acceleration,
+            period=DECISION_TICKS * TICK_STEPS * TIME_STEP,
+            radius=ROBOT_RADIUS,
+            margin=SENSOR_MARGIN,
+        )
+        self._pilot = Pilot(scenario.robot, TICK_STEPS * TIME_STEP)
+        self._twist = STILL
+        self.steps = 0
+        self.collision: Collision | None = None
+        self.arrived = False
+        self.ticks: list[Tick] = []
+        world.robot.place(*scenario.start.position, scenario.start_heading())
+        self._record()
+
+    def observe(self) -> Observation:
+        """Return the observation at the latest tick."""
+        now = self.ticks[-1]
+        position = (now.x, now.y)
+        return Observation(
+            time=now.time,
+            position=position,
+            heading=now.heading,
+            speed=now.speed,
+            turn_rate=now.turn_rate,
+            goal=self._goal.position,
+            goal_radius=self._goal.radius,
+            range=SENSOR_RANGE,
+            sense=lambda headings: self._world.sense(position, headings),
+            motion=self._motion,
+        )
+
+    def advance(self, decision: Decision) -> None:
+        """Follow the decision for one decision period."""
+        travelled = 0.0
+        for _ in range(DECISION_TICKS):
+            before = self.ticks[-1]
+            wanted = (
+                STILL
+                if self._in_goal(before)
+                else self._pilot.twist(decision, before.heading, travelled)
+            )
+            contact = self._drive(wanted)
+            self._record()
+            now = self.ticks[-1]
+            travelled += math.dist((before.x, before.y), (now.x, now.y))
+            if contact is not None:
+                self.collision = self._collision(contact)
+                return
+            if self._in_goal(now) and _at_rest(now):
+                self.arrived = True
+                return
+
+    def _drive(self, wanted: Twist) -> Contact | None:
+        """Drive for one tick; return at once on contact."""
+        world, left = self._world, TICK_STEPS
+        while left:
+            now = self._twist
+            if now == wanted:
+                stride = left
+            else:
+                stride = COMMAND_STEPS
+                now = self._twist = ramp(now, wanted, self._limits, COMMAND_STEPS * TIME_STEP)
+                world.robot.command(*wheel_commands(*now))
+            taken, contact = world.advance(stride)
+            self.steps += taken
+            if contact is not None:
+                return contact
+            left -= stride
+        return None
+
+    def _collision(self, contact: Contact) -> Collision:
+        x, y, _ = contact.point
+        wall = contact.body == self._world.walls
+        return Collision(
+            time=self.steps * TIME_STEP,
+            point=(x, y),
+            obstacle=-1 if wall else int(self._field.distances((x, y)).argmin()),
+            normal_force=contact.force,
+        )
+
+    def _in_goal(self, tick: Tick) -> bool:
+        return math.dist((tick.x, tick.y), self._goal.position) <= self._goal.radius
+
+    def _record(self) -> None:
+        state = self._world.robot.state()
+        self.ticks.append(
+            Tick(
+                self.steps * TIME_STEP,
+                *state,
+                *self._world.robot.wheel_speeds(),
+                self._world.clearance(state.x, state.y),
+            )
+        )
+
+
+def _at_rest(tick: Tick) -> bool:
+    return abs(tick.speed) < RESTING_SPEED and abs(tick.turn_rate) < RESTING_TURN_RATE

@@ -1,0 +1,1 @@
+"""Rays, bodies and contacts: the only place that imports pybullet."""

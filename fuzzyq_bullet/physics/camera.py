@@ -1,0 +1,283 @@
+"""A fixed camera: what it sees of solid things once, and of the moving robot in every frame.
+
+TinyRenderer needs a few hundred milliseconds for a whole picture. So the still world is rendered
+once, with its depth, and the robot alone, in the small rectangle of the picture that it covers;
+the two depths tell which of them is in front. The cost of a frame does not depend on the world.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fuzzyq_bullet.physics.engine import Engine
+from fuzzyq_bullet.resources import asset
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Floats: TypeAlias = NDArray[np.float64]
+Window: TypeAlias = tuple[int, int, int, int]
+"""Left, top, right and bottom of a part of the picture in pixels; right and bottom lie outside."""
+
+NOTHING = -1
+"""What a picture's mask holds where nothing is seen."""
+MAX_SIZE = 8192
+"""Most pixels along a side of a picture; absurd sizes would kill the process."""
+
+_AROUND = np.arange(16) * (math.tau / 16)
+_HULL = np.array(
+    [(0.204 * math.cos(a), 0.204 * math.sin(a), z) for a in _AROUND for z in (0, 0.157)]
+)
+"""Points about the robot (m), base frame: a little wider than its disc, from wheels to lid."""
+_LIGHT: dict[str, Any] = {
+    "lightDirection": (-4.0, -6.0, 11.0),
+    "lightColor": (1.0, 1.0, 1.0),
+    "lightAmbientCoeff": 0.58,
+    "lightDiffuseCoeff": 0.5,
+    "lightSpecularCoeff": 0.0,
+    "shadow": 0,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A surface of triangles of one colour.
+
+    Attributes:
+        vertices: Corners (m), shape (V, 3).
+        normals: Direction of the surface at each corner, unit vectors, shape (V, 3).
+        triangles: Indices of corners, shape (T, 3), anticlockwise seen from outside.
+        colour: Red, green and blue, 0 to 255.
+    """
+
+    vertices: Floats
+    normals: Floats
+    triangles: NDArray[np.int64]
+    colour: tuple[int, int, int]
+
+
+class Picture(NamedTuple):
+    """What the camera saw.
+
+    Attributes:
+        colour: Shape (h, w, 3), uint8.
+        depth: Shape (h, w), float32, from 0 at the near plane to 1 at the far one, not linear.
+        mask: Shape (h, w), int32: index of the thing seen at each pixel, or ``NOTHING``.
+    """
+
+    colour: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    mask: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Lens:
+    """A perspective camera that stands still, its picture measured in pixels from the top left.
+
+    Attributes:
+        eye: Where it stands (m).
+        target: The point it looks at (m), not straight above or below the eye.
+        field_of_view: Height of the picture as an angle (rad).
+        size: Width and height of the picture (pixels).
+        near: Distance of the nearest thing that is seen (m).
+        far: Distance of the farthest (m).
+    """
+
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
+    field_of_view: float
+    size: tuple[int, int]
+    near: float
+    far: float
+
+    def axes(self) -> Floats:
+        """Return the directions right, up and backwards of the camera, shape (3, 3)."""
+        return self._axes
+
+    @cached_property
+    def _axes(self) -> Floats:
+        back = np.subtract(self.eye, self.target)
+        back /= np.linalg.norm(back)
+        right = np.cross((0.0, 0.0, 1.0), back)
+        right /= np.linalg.norm(right)
+        return np.array([right, np.cross(back, right), back])
+
+    def view(self) -> Floats:
+        """Return the matrix from the world to the camera, shape (4, 4)."""
+        axes = self._axes
+        matrix = np.eye(4)
+        matrix[:3, :3] = axes
+        matrix[:3, 3] = -axes @ np.asarray(self.eye)
+        return matrix
+
+    def projection(self, window: Window | None = None) -> Floats:
+        """Return the matrix from the camera to clip space, shape (4, 4), for all or a part."""
+        width, height = self.size
+        focal = 1.0 / math.tan(self.field_of_view / 2)
+        near, far = self.near, self.far
+        matrix = np.zeros((4, 4))
+        matrix[0, 0] = focal * height / width
+        matrix[1, 1] = focal
+        matrix[2, 2] = -(far + near) / (far - near)
+        matrix[2, 3] = -2.0 * far * near / (far - near)
+        matrix[3, 2] = -1.0
+        if window is None:
+            return matrix
+        left, top, right, bottom = window
+        low = (2.0 * left / width - 1.0, 1.0 - 2.0 * bottom / height)
+        high = (2.0 * right / width - 1.0, 1.0 - 2.0 * top / height)
+        crop = np.eye(4)
+        for axis in (0, 1):
+            span = high[axis] - low[axis]
+            crop[axis, axis] = 2.0 / span
+            crop[axis, 3] = -(high[axis] + low[axis]) / span
+        return np.asarray(crop @ matrix)
+
+    def project(self, points: ArrayLike) -> Floats:
+        """Return where points (m), shape (N, 3), are seen (pixels), shape (N, 2).
+
+        Points behind the camera come out as NaN.
+        """
+        p = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+        seen = (p - self.eye) @ self._axes.T
+        ahead = np.where(seen[:, 2] < -1e-9, -seen[:, 2], np.nan)
+        scale = self.pixels_per_radian()
+        x = self.size[0] / 2 + scale * seen[:, 0] / ahead
+        y = self.size[1] / 2 - scale * seen[:, 1] / ahead
+        return np.stack([x, y], axis=1)
+
+    def ground(self, points: ArrayLike) -> Floats:
+        """Return the points of the ground (m), shape (N, 2), seen at pixels of shape (N, 2).
+
+        Pixels above the horizon come out as NaN.
+        """
+        pixel = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        scale = self.pixels_per_radian()
+        ray = (
+            np.column_stack(
+                [
+                    (pixel[:, 0] - self.size[0] / 2) / scale,
+                    (self.size[1] / 2 - pixel[:, 1]) / scale,
+                    np.full(len(pixel), -1.0),
+                ]
+            )
+            @ self._axes
+        )
+        down = np.where(ray[:, 2] < -1e-9, -ray[:, 2], np.nan)
+        return np.asarray(self.eye[:2] + ray[:, :2] * (self.eye[2] / down)[:, None])
+
+    def pixels_per_radian(self) -> float:
+        """Return the size (pixels) of one metre, seen across from one metre away."""
+        return self.size[1] / 2 / math.tan(self.field_of_view / 2)
+
+
+def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Picture:
+    """Return the whole picture of solid things; its mask holds indices into ``meshes``.
+
+    Args:
+        meshes: What to see.
+        lens: The camera.
+        oversampling: How many times larger than the lens's size the picture is made.
+
+    Raises:
+        ValueError: If the picture would be empty or absurdly large.
+    """
+    with Engine() as engine:
+        owner = [_add(engine, mesh) for mesh in meshes]
+        picture = _shoot(engine, lens, (0, 0, *lens.size), oversampling)
+    lookup = np.full(max(owner, default=0) + 2, NOTHING, dtype=np.int32)
+    for index, body in enumerate(owner):
+        lookup[body] = index
+    return picture._replace(mask=lookup[picture.mask])  # −1 finds the last entry: NOTHING
+
+
+class RobotCamera:
+    """Sees the robot alone, and of the picture only the rectangle that it covers."""
+
+    def __init__(self, lens: Lens, oversampling: int = 1) -> None:
+        self._lens = lens
+        self._oversampling = oversampling
+        self._engine = Engine()
+        self._robot = self._engine.load(asset("robot.urdf"))
+        # PyBullet places the centre of mass, everything else here speaks of the base frame.
+        self._mass = self._engine.api.getDynamicsInfo(
+            self._robot, -1, physicsClientId=self._engine.client
+        )[3]
+
+    def window(self, position: tuple[float, float]) -> Window | None:
+        """Return the part of the picture that the robot covers, or None when it is out of sight."""
+        corners = self._lens.project(np.add(_HULL, (*position, 0.0)))
+        if not np.isfinite(corners).all():
+            return None
+        width, height = self._lens.size
+        low, high = np.floor(corners.min(axis=0)), np.ceil(corners.max(axis=0))
+        left, top = (int(max(edge, 0.0)) for edge in low)
+        right, bottom = int(min(high[0], width)), int(min(high[1], height))
+        return (left, top, right, bottom) if right > left and bottom > top else None
+
+    def shoot(self, window: Window, position: tuple[float, float], heading: float) -> Picture:
+        """Return what ``window`` shows of the robot; the mask holds 0 where it is."""
+        cos, sin = math.cos(heading), math.sin(heading)
+        x, y, z = self._mass
+        centre = (position[0] + x * cos - y * sin, position[1] + x * sin + y * cos, z)
+        self._engine.api.resetBasePositionAndOrientation(
+            self._robot,
+            centre,
+            (0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)),
+            physicsClientId=self._engine.client,
+        )
+        return _shoot(self._engine, self._lens, window, self._oversampling)
+
+    def close(self) -> None:
+        """Free the engine."""
+        self._engine.close()
+
+    def __enter__(self) -> RobotCamera:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _add(engine: Engine, mesh: Mesh) -> int:
+    api = engine.api
+    shape = api.createVisualShape(
+        api.GEOM_MESH,
+        vertices=mesh.vertices.tolist(),
+        indices=mesh.triangles.ravel().tolist(),
+        normals=mesh.normals.tolist(),
+        rgbaColor=(*(channel / 255 for channel in mesh.colour), 1.0),
+        specularColor=(0.0, 0.0, 0.0),
+        physicsClientId=engine.client,
+    )
+    body: int = api.createMultiBody(0.0, -1, shape, physicsClientId=engine.client)
+    return body
+
+
+def _shoot(engine: Engine, lens: Lens, window: Window, oversampling: int) -> Picture:
+    left, top, right, bottom = window
+    width, height = (right - left) * oversampling, (bottom - top) * oversampling
+    if not (0 < width <= MAX_SIZE and 0 < height <= MAX_SIZE):
+        raise ValueError(f"a picture of {width} x {height} pixels cannot be taken")
+    api = engine.api
+    _, _, colour, depth, mask = api.getCameraImage(
+        width,
+        height,
+        lens.view().T.ravel().tolist(),
+        lens.projection(window).T.ravel().tolist(),
+        renderer=api.ER_TINY_RENDERER,
+        physicsClientId=engine.client,
+        **_LIGHT,
+    )
+    # Without numpy support PyBullet answers with flat tuples.
+    return Picture(
+        np.asarray(colour, dtype=np.uint8).reshape(height, width, 4)[..., :3],
+        np.asarray(depth, dtype=np.float32).reshape(height, width),
+        np.asarray(mask, dtype=np.int32).reshape(height, width),
+    )

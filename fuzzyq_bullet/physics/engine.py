@@ -1,0 +1,138 @@
+"""The typed edge around PyBullet: an owned DIRECT client, its settings, its raw tuples named."""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+
+@contextmanager
+def _silenced_stderr() -> Iterator[None]:
+    """Keep PyBullet's banner, printed from C on import, off the user's terminal."""
+    try:
+        sys.stderr.flush()
+        saved = os.dup(2)
+    except (OSError, ValueError, AttributeError):  # no stderr to protect
+        yield
+        return
+    try:
+        with Path(os.devnull).open("w") as null:
+            os.dup2(null.fileno(), 2)
+            yield
+    finally:
+        os.dup2(saved, 2)
+        os.close(saved)
+
+
+with _silenced_stderr():
+    import pybullet
+
+TIME_STEP = 1.0 / 240.0
+"""Length of one physics step (s)."""
+SOLVER_ITERATIONS = 50
+GRAVITY = -9.81
+
+
+class Pose(NamedTuple):
+    """Position (m) and orientation (quaternion x, y, z, w) of a body's centre of mass."""
+
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float]
+
+    @property
+    def yaw(self) -> float:
+        """Turn about the z axis (rad)."""
+        x, y, z, w = self.orientation
+        return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+class Contact(NamedTuple):
+    """One touching pair of bodies.
+
+    Attributes:
+        body: Id of the body that was touched.
+        point: Where, on that body (m).
+        force: Normal force (N).
+    """
+
+    body: int
+    point: tuple[float, float, float]
+    force: float
+
+
+class Engine:
+    """One PyBullet DIRECT client with this project's settings, disconnected when closed.
+
+    Settings are set anew on every reset, because ``resetSimulation`` forgets some of them and any
+    difference breaks determinism.
+    """
+
+    def __init__(self) -> None:
+        self.api: Any = pybullet
+        self.client: int = pybullet.connect(pybullet.DIRECT)
+        if self.client < 0:
+            raise RuntimeError("PyBullet has no client left; close the worlds no longer in use")
+        self.reset()
+
+    def reset(self) -> None:
+        """Empty the simulation and set every engine setting."""
+        pybullet.resetSimulation(physicsClientId=self.client)
+        pybullet.setGravity(0.0, 0.0, GRAVITY, physicsClientId=self.client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=TIME_STEP,
+            numSolverIterations=SOLVER_ITERATIONS,
+            deterministicOverlappingPairs=1,
+            physicsClientId=self.client,
+        )
+
+    def load(
+        self,
+        path: Path,
+        *,
+        position: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        yaw: float = 0.0,
+        fixed: bool = False,
+    ) -> int:
+        """Load a URDF and return its body id."""
+        if not path.is_file():  # loadURDF on a directory kills the process
+            raise FileNotFoundError(path)
+        body: int = pybullet.loadURDF(
+            str(path),
+            basePosition=position,
+            baseOrientation=pybullet.getQuaternionFromEuler((0.0, 0.0, yaw)),
+            useFixedBase=fixed,
+            flags=pybullet.URDF_USE_IMPLICIT_CYLINDER | pybullet.URDF_USE_INERTIA_FROM_FILE,
+            physicsClientId=self.client,
+        )
+        return body
+
+    def load_text(self, urdf: str) -> int:
+        """Load a fixed body from the text of a URDF and return its body id."""
+        with tempfile.TemporaryDirectory(prefix="fuzzyq-") as folder:
+            path = Path(folder) / "body.urdf"
+            path.write_text(urdf)
+            return self.load(path, fixed=True)
+
+    def close(self) -> None:
+        """Disconnect the client; a second call does nothing."""
+        if self.client >= 0:
+            client, self.client = self.client, -1
+            if pybullet.isConnected(client):
+                pybullet.disconnect(client)
+
+    def __enter__(self) -> Engine:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        # A client that is never closed keeps 18 to 29 MB; at exit the module may be gone already.
+        if pybullet is not None and getattr(self, "client", -1) >= 0:
+            self.close()

@@ -1,0 +1,73 @@
+"""Detection lines: corridors a little wider than the robot, each sensed by a bundle of rays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+
+SPREAD = np.array([0.11, 0.34, 0.56, 0.75, 0.91, 1.0])
+"""Offsets of the rays on either side, as parts of the corridor's half width.
+
+Neighbours in the middle are 0.05 m apart, the least width of an obstacle; towards the rim, where
+the front of the disc falls back ever faster, they are denser.
+"""
+
+
+class LineBundle:
+    """Turns headings into rays and ray hits into the free travel of a disc.
+
+    The rays of one line run parallel. They start on the disc's diameter and the travel is counted
+    from its front rim. The two outermost rays start outside the robot, within the margin, where
+    there may be an obstacle already; a probe from the robot's side to each of these two starts
+    tells, and such a ray is left out: what stands beside the robot does not stop it.
+
+    Args:
+        radius: Radius of the robot (m).
+        margin: How much wider than the robot the corridor is, on either side (m).
+        reach: Longest travel told (m).
+        height: Height of the rays above the ground (m).
+    """
+
+    def __init__(self, radius: float, margin: float, reach: float, height: float) -> None:
+        wide = radius + margin
+        offset = wide * np.concatenate([-SPREAD[::-1], SPREAD])
+        rim = np.sqrt(wide**2 - offset**2)
+        self.reach = reach
+        self._height = height
+        self._rim = rim
+        self._length = rim + reach
+        # Points of the plane as complex numbers, so that a turn is one product: the starts of all
+        # rays and of the right and left probe, then their ends, for a robot that faces along x.
+        starts = np.concatenate([1j * offset, [-1j * radius, 1j * radius]])
+        ends = np.concatenate([self._length + 1j * offset, [-1j * wide, 1j * wide]])
+        self._local = np.array([starts, ends])[:, None, :]
+
+    def rays(self, origin: tuple[float, float], headings: Sequence[float]) -> tuple[Floats, Floats]:
+        """Return the start and end points of all rays and probes, each of shape (K·14, 3)."""
+        turned = self._local * np.exp(1j * np.array(headings))[:, None]
+        turned += complex(*origin)
+        points = np.full((2, turned[0].size, 3), self._height)
+        points[:, :, :2] = turned.view(np.float64).reshape(2, -1, 2)
+        return points[0], points[1]
+
+    def travel(self, fractions: Sequence[float]) -> Floats:
+        """Return the free travel (m) along each heading, shape (K,), in [0, reach].
+
+        Args:
+            fractions: Where each ray ended as a part of its length (1: no hit), shape (K·14,).
+        """
+        ended = np.array(fractions).reshape(-1, self._rim.size + 2)
+        travel = ended[:, :-2] * self._length
+        travel -= self._rim
+        probes = ended[:, -2:]
+        if probes.min() < 1.0:
+            travel[probes[:, 0] < 1.0, 0] = np.inf
+            travel[probes[:, 1] < 1.0, -1] = np.inf
+        least: Floats = travel.min(axis=1)
+        np.maximum(least, 0.0, out=least)
+        return np.minimum(least, self.reach, out=least)

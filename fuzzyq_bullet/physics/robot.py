@@ -1,0 +1,115 @@
+"""The robot's body in the simulation: loaded from its URDF, moved by its two wheels alone."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from fuzzyq_bullet.physics.engine import Engine, Pose
+from fuzzyq_bullet.resources import asset
+
+WHEEL_RADIUS = 0.05
+TRACK = 0.28
+"""Distance between the wheels (m)."""
+BODY_HEIGHT = 0.09
+"""Height of the middle of the body above the ground (m)."""
+MOTOR_TORQUE = 3.0
+"""Greatest torque of a wheel motor (N·m)."""
+
+
+class RobotState(NamedTuple):
+    """Where the robot is and how it moves.
+
+    Attributes:
+        x: Centre between the wheels (m).
+        y: Centre between the wheels (m).
+        heading: Direction it faces (rad).
+        speed: Forward speed (m/s).
+        turn_rate: Turn rate (rad/s).
+    """
+
+    x: float
+    y: float
+    heading: float
+    speed: float
+    turn_rate: float
+
+
+class Robot:
+    """A differential drive: two velocity-controlled wheels and a caster without friction."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._api = engine.api
+        self.body = engine.load(asset("robot.urdf"))
+        count = self._api.getNumJoints(self.body, physicsClientId=engine.client)
+        names = {
+            self._api.getJointInfo(self.body, index, physicsClientId=engine.client)[
+                1
+            ].decode(): index
+            for index in range(count)
+        }
+        self.links = tuple(names.values())
+        self._wheels = (names["left_axle"], names["right_axle"])
+        self._forces = (MOTOR_TORQUE, MOTOR_TORQUE)
+        inertial = self._api.getDynamicsInfo(self.body, -1, physicsClientId=engine.client)[3]
+        self._mass_x, _, self._mass_z = inertial
+
+    def place(self, x: float, y: float, heading: float) -> None:
+        """Put the robot at rest on the ground, centre at (x, y)."""
+        client = self._engine.client
+        position = (
+            x + self._mass_x * math.cos(heading),
+            y + self._mass_x * math.sin(heading),
+            self._mass_z,
+        )
+        orientation = (0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
+        self._api.resetBasePositionAndOrientation(
+            self.body, position, orientation, physicsClientId=client
+        )
+        self._api.resetBaseVelocity(self.body, (0, 0, 0), (0, 0, 0), physicsClientId=client)
+        for wheel in self._wheels:
+            self._api.resetJointState(self.body, wheel, 0.0, 0.0, physicsClientId=client)
+        self.command(0.0, 0.0)
+
+    def command(self, left: float, right: float) -> None:
+        """Set the speeds (rad/s) that the wheel motors hold from now on."""
+        self._api.setJointMotorControlArray(
+            self.body,
+            self._wheels,
+            self._api.VELOCITY_CONTROL,
+            targetVelocities=(left, right),
+            forces=self._forces,
+            physicsClientId=self._engine.client,
+        )
+
+    def state(self) -> RobotState:
+        """Return the robot's planar state."""
+        client = self._engine.client
+        pose = Pose(*self._api.getBasePositionAndOrientation(self.body, physicsClientId=client))
+        (vx, vy, _), (_, _, turn_rate) = self._api.getBaseVelocity(
+            self.body, physicsClientId=client
+        )
+        heading = pose.yaw
+        cos, sin = math.cos(heading), math.sin(heading)
+        # PyBullet tells the centre of mass, which lies a little towards the caster.
+        return RobotState(
+            pose.position[0] - self._mass_x * cos,
+            pose.position[1] - self._mass_x * sin,
+            heading,
+            vx * cos + vy * sin,
+            turn_rate,
+        )
+
+    def wheel_speeds(self) -> tuple[float, float]:
+        """Return the measured speeds of the left and right wheel (rad/s)."""
+        left, right = self._api.getJointStates(
+            self.body, self._wheels, physicsClientId=self._engine.client
+        )
+        return left[1], right[1]
+
+
+def wheel_commands(speed: float, turn_rate: float) -> tuple[float, float]:
+    """Return the wheel speeds (rad/s) of an ideal differential drive for a twist (m/s, rad/s)."""
+    half = turn_rate * TRACK / 2
+    return (speed - half) / WHEEL_RADIUS, (speed + half) / WHEEL_RADIUS
