@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
+import secrets
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -14,15 +14,20 @@ from fuzzyq_bullet.errors import UserError
 def written_beside(path: Path) -> Iterator[Path]:
     """Yield a path beside ``path``; rename it into place when the block ends well.
 
+    However else the block ends, what was at ``path`` before is still there, and nothing new.
+
     Raises:
         UserError: If the file cannot be written (permissions, a full disk, a folder in its place).
     """
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    part = _part(path)
     try:
         yield part
-        os.replace(part, path)
+        part.replace(path)
     except OSError as error:
         raise UserError(f"{path}: cannot be written: {error.strerror or error}") from error
+    except UserError as error:  # raised by what was told to write the part; nobody else knows it
+        told = (problem.replace(str(part), str(path)) for problem in error.problems)
+        raise UserError(*told) from error
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
@@ -44,13 +49,33 @@ def writable_folder(path: Path) -> Path:
     Raises:
         UserError: If it cannot be created or written to.
     """
-    probe = path / f".fuzzyq-{os.getpid()}.part"
+    probe = _part(path / "fuzzyq")
     try:
         path.mkdir(parents=True, exist_ok=True)
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise UserError(
-            f"{path}: not a folder that can be written to: {error.strerror or error}"
-        ) from error
+        try:
+            probe.touch()
+        finally:
+            probe.unlink(missing_ok=True)
+    except (OSError, ValueError) as error:  # ValueError: a null character
+        reason = getattr(error, "strerror", None) or error
+        raise UserError(f"{path}: not a folder that can be written to: {reason}") from error
     return path
+
+
+def writable_files(folder: Path, names: Sequence[str]) -> list[Path]:
+    """Return the paths of files that can be written in ``folder``, which is created if need be.
+
+    Raises:
+        UserError: If the folder cannot be written to, or a folder is in a file's place.
+    """
+    writable_folder(folder)
+    paths = [folder / name for name in names]
+    for path in paths:
+        if path.is_dir():
+            raise UserError(f"{path}: cannot be written: there is a folder of that name")
+    return paths
+
+
+def _part(path: Path) -> Path:
+    # By chance, not by process id: containers that share a folder may share that too.
+    return path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")

@@ -12,8 +12,6 @@ from fuzzyq_bullet.scenario.models import Robot
 
 TURN_GAIN = 4.0
 """Turn rate for an error of heading of 1 rad (1/s)."""
-TURN_ON_SPOT = math.radians(60.0)
-"""From this error of heading on the robot stands while it turns."""
 
 
 class Twist(NamedTuple):
@@ -51,9 +49,10 @@ class Pilot:
         error = wrap_angle(decision.heading - heading)
         stoppable = math.sqrt(robot.turn_acceleration * abs(error))
         rate = min(TURN_GAIN * abs(error), robot.max_turn_rate, stoppable)
-        ahead = (math.cos(error) - math.cos(TURN_ON_SPOT)) / (1.0 - math.cos(TURN_ON_SPOT))
         speed = min(
-            decision.step / self._step_time * max(0.0, ahead),
+            # Only what leads towards the new heading counts; more than a quarter turn away from it
+            # the robot stands while it turns.
+            decision.step / self._step_time * max(0.0, math.cos(error)),
             robot.max_speed,
             self._stoppable_speed(decision.reach - travelled),
         )

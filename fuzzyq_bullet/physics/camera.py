@@ -116,6 +116,12 @@ class Lens:
         matrix[:3, 3] = -axes @ np.asarray(self.eye)
         return matrix
 
+    @cached_property
+    def view_list(self) -> list[float]:
+        """The view as PyBullet wants it: 16 numbers, column by column."""
+        numbers: list[float] = self.view().T.ravel().tolist()
+        return numbers
+
     def projection(self, window: Window | None = None) -> Floats:
         """Return the matrix from the camera to clip space, shape (4, 4), for all or a part."""
         width, height = self.size
@@ -269,7 +275,7 @@ def _shoot(engine: Engine, lens: Lens, window: Window, oversampling: int) -> Pic
     _, _, colour, depth, mask = api.getCameraImage(
         width,
         height,
-        lens.view().T.ravel().tolist(),
+        lens.view_list,
         lens.projection(window).T.ravel().tolist(),
         renderer=api.ER_TINY_RENDERER,
         physicsClientId=engine.client,

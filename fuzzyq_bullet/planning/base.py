@@ -19,7 +19,7 @@ LONGEST_STRIDE = 2.0
 """Upper end of N_s: the longest step is this many S_p."""
 
 RangeSensor: TypeAlias = Callable[[Sequence[float]], Floats]
-"""Free travel to contact (m, at most the sensor's range) along each world heading (rad), one batch."""
+"""Free travel to contact (m, at most the range) along each world heading (rad), in one batch."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,25 +38,27 @@ def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Mot
     """
     facing = observation.heading
     turn = wrap_angle(decision.heading - facing)
+    # What the robot still turns of itself while it reverses its turn rate.
     coast = observation.turn_rate * abs(observation.turn_rate) / (2.0 * motion.turn_acceleration)
-    ways = _fan(turn, coast, _spacing(motion, observation.speed))
-    free = observation.sense([facing + way for way in ways]).tolist()
+    start = max(0.0, min(coast, turn)) if turn >= 0.0 else min(0.0, max(coast, turn))
+    spacing = _spacing(motion, observation.speed)
+    passed = [0.0, *_spread(0.0, coast, spacing)]
+    wanted = _spread(start, turn, spacing)
+    free = observation.sense([facing + way for way in (*passed, *wanted)]).tolist()
 
+    reach = min(free[: len(passed)]) - RESERVE
+    heading, ahead = facing + start if wanted else decision.heading, reach + RESERVE
     need = observation.speed * motion.period + motion.way_to_stop(observation.speed)
-    reach, heading, ahead = decision.reach, facing, free[0]
-    for index, (way, length) in enumerate(zip(ways, free, strict=True)):
-        passed_anyway = index == 0 or min(0.0, coast) <= way <= max(0.0, coast)
-        if not passed_anyway and RESERVE < need > length - RESERVE:
-            break  # this way and those beyond it are not to be had yet
+    for further, length in zip(wanted, free[len(passed) :], strict=True):
+        if RESERVE < need > length - RESERVE:
+            break
         reach = min(reach, length - RESERVE)
-        heading, ahead = facing + way, length
-    else:
-        heading, ahead = decision.heading, free[-1]
+        heading, ahead = facing + further, length
     return replace(
         decision,
         heading=heading,
         step=_usable(ahead, decision.step),
-        reach=max(0.0, reach),
+        reach=max(0.0, min(reach, decision.reach)),
         guard=ahead,
     )
 
@@ -65,23 +67,17 @@ def _usable(free: float, step: float) -> float:
     return max(0.0, min(step, free - RESERVE))
 
 
-def _fan(turn: float, coast: float, spacing: float) -> list[float]:
-    """Return the ways to sense (rad, from where the robot faces), the new heading last.
+def _spread(start: float, end: float, spacing: float) -> list[float]:
+    """Return ways (rad) from next to ``start`` up to ``end``, at most ``spacing`` apart.
 
-    They cover the turn, and what the robot still turns of itself while it reverses its turn rate.
+    None where the two are so close that the corridor at ``start`` covers both. Ways further round
+    than ``WIDEST`` are left out but for the last.
     """
-    if max(abs(turn), abs(coast)) <= NARROW:
-        return [turn]
-    beyond = abs(coast) > abs(turn) or coast * turn < 0.0
-    within = max(-WIDEST, min(WIDEST, turn))
-    fan = [0.0, *(_spread(coast, spacing) if beyond else ()), *_spread(within, spacing)]
-    return fan if within == turn else [*fan, turn]
-
-
-def _spread(end: float, spacing: float) -> list[float]:
-    """Return evenly spaced ways from next to 0 up to ``end``."""
-    count = math.ceil(abs(end) / spacing)
-    return [end * k / count for k in range(1, count + 1)]
+    if abs(end - start) <= NARROW:
+        return []
+    count = math.ceil(abs(end - start) / spacing)
+    ways = [start + (end - start) * k / count for k in range(1, count)]
+    return [*(way for way in ways if abs(way) <= WIDEST), end]
 
 
 def _spacing(motion: Motion, speed: float) -> float:

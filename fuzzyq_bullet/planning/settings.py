@@ -23,24 +23,24 @@ class RoutineSettings(PlannerSettings):
     """Parameters of the routine part: detection lines, fuzzy controller, weights (Section 3)."""
 
     weights: tuple[Weight, Weight] = Field(
-        (0.5, 0.5), description="(ω1, ω2) of Eq. 17: ω1 scales the step, ω2 the turn."
+        default=(0.5, 0.5), description="(ω1, ω2) of Eq. 17: ω1 scales the step, ω2 the turn."
     )
     line_angle: Annotated[_Number, Field(gt=0.0, lt=math.pi)] = Field(
-        math.radians(45.0),
+        default=math.radians(45.0),
         description="α: angle of the left and right lines from the middle one (rad).",
     )
     turn_unit: Annotated[_Number, Field(gt=0.0, le=math.pi / 2)] = Field(
-        math.radians(60.0), description="A_p of Eq. 15: turn for N_a = 1 (rad)."
+        default=math.radians(60.0), description="A_p of Eq. 15: turn for N_a = 1 (rad)."
     )
     distance: Literal["middle", "least"] = Field(
-        "middle",
+        default="middle",
         description="Which line gives d: the middle one (Section 3.1) or the least (Step 9).",
     )
     rules: Literal["corrected", "printed"] = Field(
-        "corrected", description="Table 4 with its two misprints mended, or as printed."
+        default="corrected", description="Table 4 with its two misprints mended, or as printed."
     )
     samples: Annotated[int, Strict(), Field(ge=3, le=10_001)] = Field(
-        101, description="n of Eq. 22: points of the centroid. The paper says 5."
+        default=101, description="n of Eq. 22: points of the centroid. The paper says 5."
     )
 
 
@@ -55,5 +55,5 @@ class ImprovedFuzzySettings(RoutineSettings):
 
     name: Literal["improved-fuzzy"] = "improved-fuzzy"
     guard: Annotated[bool, Strict()] = Field(
-        True, description="Whether a corridor along the final heading caps the step."
+        default=True, description="Whether a corridor along the final heading caps the step."
     )

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-import difflib
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.registry import planner_names, settings_for
 from fuzzyq_bullet.scenario.models import Drive, Scenario
+from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+MAX_SEED = 2**63 - 1
 
 
 def with_options(
@@ -23,7 +28,7 @@ def with_options(
         scenario: The scenario as it was loaded.
         planner: Name of a planner; its parameters stay those of the scenario if it names the same
             planner, and are the defaults otherwise.
-        seed: At least 0.
+        seed: 0 to 2⁶³ − 1.
         drive: ``wheels`` or ``kinematic``.
 
     Raises:
@@ -31,19 +36,19 @@ def with_options(
     """
     update: dict[str, Any] = {}
     if planner is not None and planner != scenario.planner.name:
-        update["planner"] = settings_for(_one_of("planner", planner, planner_names()))(name=planner)
+        _refuse_unless_one_of("planner", planner, planner_names())
+        update["planner"] = settings_for(planner).model_validate({"name": planner})
     if seed is not None:
-        if not 0 <= seed < 2**63:
-            raise UserError(f"seed: must be between 0 and 2^63 - 1, got {seed}")
+        if not 0 <= seed <= MAX_SEED:
+            raise UserError(f"seed: must be from 0 to {MAX_SEED}, got {seed}")
         update["seed"] = seed
     if drive is not None:
-        update["drive"] = _one_of("drive", drive, get_args(Drive))
+        _refuse_unless_one_of("drive", drive, get_args(Drive))
+        update["drive"] = drive
     return scenario.model_copy(update=update) if update else scenario
 
 
-def _one_of(what: str, value: str, allowed: tuple[str, ...]) -> str:
-    if value in allowed:
-        return value
-    close = difflib.get_close_matches(value, allowed, n=1)
-    hint = f"; did you mean {close[0]!r}?" if close else ""
-    raise UserError(f"{what}: unknown {what} {value!r}{hint} (allowed: {', '.join(allowed)})")
+def _refuse_unless_one_of(what: str, value: str, allowed: Sequence[str]) -> None:
+    if value not in allowed:
+        hint = did_you_mean(value, allowed)
+        raise UserError(f"{what}: no {what} {shorten(value)}; {hint}allowed: {', '.join(allowed)}")

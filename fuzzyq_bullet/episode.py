@@ -1,0 +1,99 @@
+"""One episode: a scenario and a planner become a trajectory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+
+from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
+from fuzzyq_bullet.drives.base import Tick
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.physics.world import World
+from fuzzyq_bullet.planning import Decision, Planner, make_planner
+from fuzzyq_bullet.recorder import recorded
+from fuzzyq_bullet.scenario import check, realise
+from fuzzyq_bullet.scenario.models import Limits, Scenario
+from fuzzyq_bullet.trajectory import Outcome, Trajectory
+
+Progress: TypeAlias = Callable[[float, float], None]
+"""Called after every decision with the simulated time (s) and the distance to the goal (m)."""
+
+STUCK_TIME = 10.0
+STUCK_RADIUS = 0.1
+"""A robot that stays within this distance (m) for ``STUCK_TIME`` seconds is stuck."""
+
+
+def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
+    """Run one episode and return everything that happened.
+
+    Args:
+        scenario: What to run. Use ``scenario.with_options`` to change planner, seed or drive.
+        progress: Called after every decision.
+
+    Raises:
+        UserError: If the scenario cannot be run: overlaps, or obstacles that cannot be placed.
+    """
+    scenario = realise(scenario)
+    check(scenario)
+    # The first stream of the seed places the obstacles; the planner has the second to itself.
+    rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(1,)))
+    planner = make_planner(scenario.planner, rng)
+    with World(scenario.obstacles, scenario.arena) as world:
+        return run_in(world, scenario, planner, progress=progress)
+
+
+def run_in(
+    world: World, scenario: Scenario, planner: Planner, *, progress: Progress | None = None
+) -> Trajectory:
+    """Run one episode of a realised scenario in a world that is already built for it."""
+    field = Field.of(scenario.obstacles, scenario.arena)
+    driver: Driver = (
+        WheelsDriver(world, field, scenario)
+        if scenario.drive == "wheels"
+        else KinematicDriver(world, field, scenario)
+    )
+    decisions: list[tuple[int, Decision]] = []
+    standstill = _Standstill(driver.ticks[0])
+    outcome = None
+    while outcome is None:
+        decision = planner.decide(driver.observe())
+        decisions.append((len(driver.ticks) - 1, decision))
+        driver.advance(decision)
+        outcome = _outcome(driver, decision, len(decisions), scenario.limits, standstill)
+        if progress is not None:
+            now = driver.ticks[-1]
+            progress(now.time, math.dist((now.x, now.y), scenario.goal.position))
+    return recorded(scenario, driver, decisions, outcome)
+
+
+class _Standstill:
+    """Notices that the robot has stayed about one place for too long."""
+
+    def __init__(self, start: Tick) -> None:
+        self._anchor = start
+
+    def lasts(self, now: Tick) -> bool:
+        """Return whether the robot has been near one place for ``STUCK_TIME`` by now."""
+        anchor = self._anchor
+        if math.hypot(now.x - anchor.x, now.y - anchor.y) > STUCK_RADIUS:
+            self._anchor = now
+            return False
+        return now.time - anchor.time >= STUCK_TIME
+
+
+def _outcome(
+    driver: Driver, last: Decision, count: int, limits: Limits, standstill: _Standstill
+) -> Outcome | None:
+    now = driver.ticks[-1]
+    if driver.collision is not None:
+        return "collision"
+    if driver.arrived:
+        return "goal"
+    if standstill.lasts(now) or last.hopeless:
+        return "stuck"
+    if now.time >= limits.time or count >= limits.steps:
+        return "timeout"
+    return None

@@ -1,0 +1,93 @@
+"""How fast a video is made: against the encoder alone, and against the plain way to render."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fuzzyq_bullet.episode import run
+from fuzzyq_bullet.experiments.timing import interleaved
+from fuzzyq_bullet.planning import ImprovedFuzzySettings
+from fuzzyq_bullet.scenario import Goal, Limits, Random, Scenario, Start
+from fuzzyq_bullet.trajectory import Trajectory
+from fuzzyq_bullet.video import record
+from fuzzyq_bullet.video.encoder import Encoder
+from fuzzyq_bullet.video.film import Film
+from fuzzyq_bullet.video.record import moments
+from fuzzyq_bullet.video.scene import PlainScene
+from fuzzyq_bullet.video.stage import Stage
+from fuzzyq_bullet.video.timeline import Timeline
+
+
+@dataclass(frozen=True)
+class VideoTimes:
+    """Times by the clock on the wall (s), one a round; ffmpeg works in a process of its own.
+
+    Attributes:
+        frames: Frames of the video.
+        seconds: How long it plays (s).
+        pipeline: Making the whole video from a record.
+        encoding: Only encoding its frames, which lie ready.
+        whole_frame: Rendering one whole frame of its 3-D scene.
+    """
+
+    frames: int
+    seconds: float
+    pipeline: list[float]
+    encoding: list[float]
+    whole_frame: list[float]
+
+
+def compare(rounds: int) -> VideoTimes:
+    """Time the three ways over the same run among 125 obstacles, in turn."""
+    trajectory = _trajectory()
+    with tempfile.TemporaryDirectory(prefix="fuzzyq-") as name:
+        folder = Path(name)
+        info = record(trajectory, folder / "pipeline.mp4")
+        frames = _ready_made(trajectory, folder / "frames.raw", info.frames)
+        with PlainScene(trajectory) as plain:
+            works: list[Callable[[], object]] = [
+                lambda: record(trajectory, folder / "pipeline.mp4"),
+                lambda: _encode(frames, folder / "encoding.mp4"),
+                plain.draw,
+            ]
+            pipeline, encoding, whole = interleaved(works, rounds, clock=time.perf_counter)
+        del frames
+    return VideoTimes(info.frames, info.seconds, pipeline, encoding, whole)
+
+
+def _trajectory() -> Trajectory:
+    return run(
+        Scenario(
+            name="video-speed",
+            seed=4,
+            start=Start(position=(1.0, 1.0)),
+            goal=Goal(position=(9.0, 9.0)),
+            planner=ImprovedFuzzySettings(weights=(1.0, 1.0)),
+            random=Random(count=125),
+            limits=Limits(time=30.0),
+        )
+    )
+
+
+def _ready_made(trajectory: Trajectory, path: Path, count: int) -> np.memmap:
+    film = Film()
+    frames = np.memmap(path, dtype=np.uint8, mode="w+", shape=(count, film.planes.size))
+    with Stage(trajectory) as stage:
+        for k, moment in enumerate(moments(Timeline(trajectory), 1.0)):
+            film.apply(stage.patches(moment))
+            frames[k] = film.planes
+    return frames
+
+
+def _encode(frames: np.memmap, path: Path) -> None:
+    film = Film()
+    with Encoder(path) as encoder:
+        for planes in frames:
+            film.planes = planes
+            encoder.write(film)

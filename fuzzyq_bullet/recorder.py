@@ -1,0 +1,71 @@
+"""From what a drive and a planner left behind to the arrays of a trajectory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fuzzyq_bullet.drives import Driver
+from fuzzyq_bullet.planning import MODES, Decision
+from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.trajectory import Decisions, Floats, Outcome, Ticks, Trajectory
+from fuzzyq_bullet.version import __version__
+
+
+def recorded(
+    scenario: Scenario,
+    driver: Driver,
+    decisions: Sequence[tuple[int, Decision]],
+    outcome: Outcome,
+) -> Trajectory:
+    """Return the trajectory of a finished episode.
+
+    Args:
+        scenario: The scenario as it ran, every obstacle listed.
+        driver: The drive, with its ticks.
+        decisions: Each decision with the index of the tick it was taken at.
+        outcome: How the episode ended.
+    """
+    ticks = np.array(driver.ticks, dtype=np.float64)
+    taken = [decision for _, decision in decisions]
+
+    def column(name: str, *shape: int) -> Floats:
+        values = [getattr(decision, name) for decision in taken]
+        return np.array(values, dtype=np.float64).reshape(len(taken), *shape)
+
+    return Trajectory(
+        scenario=scenario,
+        outcome=outcome,
+        physics_steps=driver.steps,
+        collision=driver.collision,
+        ticks=Ticks(
+            time=ticks[:, 0],
+            position=ticks[:, 1:3],
+            heading=ticks[:, 3],
+            speed=ticks[:, 4],
+            turn_rate=ticks[:, 5],
+            wheel_speeds=ticks[:, 6:8],
+            clearance=ticks[:, 8],
+        ),
+        decisions=Decisions(
+            tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
+            heading=column("heading"),
+            step=column("step"),
+            reach=column("reach"),
+            mode=np.array([MODES.index(decision.mode) for decision in taken], dtype=np.int64),
+            lines=column("lines", 3),
+            lengths=column("lengths", 3),
+            distance=column("distance"),
+            difference=column("difference"),
+            near=column("near", 5),
+            side=column("side", 5),
+            rules=column("rules", 5, 5),
+            turn=column("turn"),
+            stride=column("stride"),
+            weights=column("weights", 2),
+            guard=column("guard"),
+            target=column("target", 2),
+        ),
+        version=__version__,
+    )

@@ -1,0 +1,278 @@
+"""Whole episodes: what drives, what touches, what is recorded, and that it repeats."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fuzzyq_bullet.episode import run, run_in
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.metrics import result_of
+from fuzzyq_bullet.physics.world import World
+from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
+from fuzzyq_bullet.scenario import (
+    ROBOT_RADIUS,
+    Arena,
+    Box,
+    Cylinder,
+    Goal,
+    Limits,
+    Random,
+    Robot,
+    Scenario,
+    Start,
+    load_scenario,
+    realise,
+    with_options,
+)
+from fuzzyq_bullet.trajectory import Trajectory
+
+FAST = ImprovedFuzzySettings(weights=(1.0, 1.0))
+
+
+def scenario(**changes):
+    plain = {
+        "name": "test",
+        "arena": Arena(size=(5.0, 5.0)),
+        "start": Start(position=(0.5, 2.5)),
+        "goal": Goal(position=(4.5, 2.5)),
+        "planner": FAST,
+        "limits": Limits(time=40.0),
+    }
+    return Scenario(**{**plain, **changes})
+
+
+def cylinder(x, y, radius=0.2):
+    return Cylinder(shape="cylinder", position=(x, y), radius=radius)
+
+
+def ahead_of(trajectory):
+    """Return the true free distance straight ahead of the robot at every tick (m)."""
+    field = Field.of(trajectory.scenario.obstacles, trajectory.scenario.arena)
+    ticks = trajectory.ticks
+    return np.array(
+        [
+            field.free_distance(position, [heading], ROBOT_RADIUS, 5.0)[0]
+            for position, heading in zip(ticks.position, ticks.heading, strict=True)
+        ]
+    )
+
+
+@pytest.fixture(scope="module")
+def crossing():
+    return run(scenario(obstacles=(cylinder(2.5, 2.6), cylinder(3.6, 2.2)), seed=3))
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+@pytest.mark.parametrize("planner", [FuzzySettings(), ImprovedFuzzySettings()])
+def test_an_open_field_is_crossed_straight(drive, planner):
+    trajectory = run(scenario(drive=drive, planner=planner))
+    result = result_of(trajectory)
+    assert result.outcome == "goal"
+    assert result.path_length_m == pytest.approx(4.0, abs=0.25)
+    assert np.abs(trajectory.ticks.position[:, 1] - 2.5).max() < 0.02
+
+
+def test_it_stops_within_the_goal(crossing):
+    assert crossing.outcome == "goal"
+    last = crossing.ticks.position[-1]
+    assert math.dist(last, (4.5, 2.5)) <= 0.2
+    assert abs(crossing.ticks.speed[-1]) < 0.01
+
+
+def test_it_goes_round_what_stands_in_the_way(crossing):
+    assert crossing.ticks.clearance.min() > 0.0
+    assert np.abs(crossing.ticks.position[:, 1] - 2.5).max() > 0.15
+    assert crossing.decisions.difference.any()
+
+
+def test_it_flows_and_does_not_stop_to_turn(crossing):
+    ticks = crossing.ticks
+    under_way = (ticks.time > 1.0) & (np.hypot(*(ticks.position - (4.5, 2.5)).T) > 0.5)
+    assert ticks.speed[under_way].min() > 0.03
+
+
+def test_it_decides_several_times_a_second(crossing):
+    taken = crossing.ticks.time[crossing.decisions.tick]
+    assert np.diff(taken).max() <= 0.2
+
+
+def test_it_never_outruns_its_braking_distance():
+    field = scenario(
+        arena=Arena(size=(10.0, 10.0)),
+        start=Start(position=(1.0, 1.0)),
+        goal=Goal(position=(9.0, 9.0)),
+        random=Random(count=75),
+        robot=Robot(max_speed=1.0, acceleration=0.8),
+    )
+    for seed in range(3):
+        trajectory = run(with_options(field, seed=seed))
+        braking = trajectory.ticks.speed**2 / (2 * 0.8)
+        assert (braking <= ahead_of(trajectory) + 0.005).all()
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+@pytest.mark.parametrize("weight", [0.5, 1.0])
+def test_the_guarded_planner_touches_nothing_even_where_it_gets_stuck(drive, weight):
+    for seed in range(4):
+        trajectory = run(
+            scenario(
+                arena=Arena(size=(6.0, 6.0)),
+                start=Start(position=(0.6, 0.6)),
+                goal=Goal(position=(5.4, 5.4)),
+                random=Random(count=45),
+                planner=ImprovedFuzzySettings(weights=(weight, weight)),
+                drive=drive,
+                seed=seed,
+            )
+        )
+        assert trajectory.collision is None
+        assert trajectory.outcome in {"goal", "stuck", "timeout"}
+        assert trajectory.ticks.clearance.min() > 0.0
+
+
+class Onward:
+    """A planner that drives straight on, whatever it might see."""
+
+    def __init__(self, heading=0.0):
+        self.heading = heading
+
+    def decide(self, observation):
+        return Decision(heading=self.heading, step=0.4)
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_a_touch_is_a_collision_that_says_when_where_and_what(drive):
+    obstacles = (cylinder(1.5, 4.0), cylinder(3.0, 2.5), cylinder(4.0, 1.0))
+    task = realise(scenario(obstacles=obstacles, drive=drive))
+    with World(task.obstacles, task.arena) as world:
+        trajectory = run_in(world, task, Onward())
+    assert trajectory.outcome == "collision"
+    hit = trajectory.collision
+    assert hit.obstacle == 1
+    assert hit.time == pytest.approx(trajectory.ticks.time[-1])
+    assert trajectory.ticks.position[-1][0] == pytest.approx(3.0 - 0.4, abs=0.02)
+    assert math.dist(hit.point, (3.0, 2.5)) < 0.45
+    assert result_of(trajectory).collisions == 1
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_a_wall_is_named_as_a_wall(drive):
+    task = realise(scenario(drive=drive))
+    with World(task.obstacles, task.arena) as world:
+        trajectory = run_in(world, task, Onward(math.pi / 2))
+    assert trajectory.outcome == "collision"
+    assert trajectory.collision.obstacle == -1
+    assert trajectory.ticks.position[-1][1] == pytest.approx(4.8, abs=0.02)
+
+
+def test_the_kinematic_drive_moves_by_equation_17_exactly():
+    trajectory = run(scenario(drive="kinematic", obstacles=(cylinder(2.5, 2.6),)))
+    position, decisions = trajectory.ticks.position, trajectory.decisions
+    assert len(position) == len(decisions.step) + 1
+    direction = np.column_stack([np.cos(decisions.heading), np.sin(decisions.heading)])
+    assert np.diff(position, axis=0) == pytest.approx(
+        decisions.step[:, None] * direction, abs=1e-12
+    )
+
+
+def test_the_kinematic_touch_is_swept_and_not_only_looked_for_at_the_end():
+    # A step of 0.4 m over an obstacle of 0.1 m: both its ends are free.
+    task = realise(
+        scenario(
+            drive="kinematic",
+            start=Start(position=(0.5, 2.5)),
+            obstacles=(cylinder(0.5 + 0.35, 2.5 + 0.22, 0.025),),
+        )
+    )
+    with World(task.obstacles, task.arena) as world:
+        trajectory = run_in(world, task, Onward())
+    assert trajectory.outcome == "collision"
+
+
+def test_a_dead_end_ends_as_stuck_and_a_short_limit_as_timeout():
+    trap = (
+        Box(shape="box", position=(2.6, 2.5), size=(0.2, 2.0)),
+        Box(shape="box", position=(2.2, 3.4), size=(0.8, 0.2)),
+        Box(shape="box", position=(2.2, 1.6), size=(0.8, 0.2)),
+    )
+    assert run(scenario(obstacles=trap)).outcome == "stuck"
+    short = run(scenario(limits=Limits(time=2.0)))
+    assert short.outcome == "timeout"
+    assert short.ticks.time[-1] == pytest.approx(2.0, abs=0.2)
+    few = run(scenario(limits=Limits(steps=5)))
+    assert (few.outcome, len(few.decisions.tick)) == ("timeout", 5)
+
+
+def test_everything_that_a_picture_needs_is_recorded(crossing):
+    decisions = crossing.decisions
+    for name in ("lines", "lengths", "near", "side", "rules", "weights", "step", "turn", "guard"):
+        assert np.isfinite(getattr(decisions, name)).all(), name
+    assert decisions.rules == pytest.approx(decisions.near[:, :, None] * decisions.side[:, None])
+    ticks = crossing.ticks
+    assert (np.diff(ticks.time) > 0).all()
+    assert decisions.tick[-1] < len(ticks.time)
+    ideal = ticks.wheel_speeds.mean(axis=1) * 0.05
+    assert np.abs(ideal - ticks.speed).max() < 0.03
+
+
+def test_the_recorded_clearance_is_the_true_one(crossing):
+    field = Field.of(crossing.scenario.obstacles, crossing.scenario.arena)
+    truth = field.clearance(crossing.ticks.position) - ROBOT_RADIUS
+    assert crossing.ticks.clearance == pytest.approx(truth, abs=0.003)
+
+
+def test_a_record_survives_the_disk(crossing, tmp_path):
+    path = tmp_path / "run.npz"
+    crossing.save(path)
+    again = Trajectory.load(path)
+    assert again.digest() == crossing.digest()
+    assert again.scenario == crossing.scenario
+    assert (again.outcome, again.collision) == (crossing.outcome, crossing.collision)
+    assert result_of(again) == result_of(crossing)
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_the_same_run_has_the_same_digest_and_another_seed_another(drive):
+    task = scenario(random=Random(count=15), drive=drive)
+    first = run(task).digest()
+    assert run(task).digest() == first
+    assert run(with_options(task, seed=5)).digest() != first
+
+
+def test_a_world_used_before_gives_the_same_run():
+    task = realise(scenario(obstacles=(cylinder(2.5, 2.6),)))
+    with World(task.obstacles, task.arena) as world:
+        digests = {
+            run_in(world, task, FuzzyOrImproved()).digest() for FuzzyOrImproved in [make] * 3
+        }
+    assert digests == {run(task).digest()}
+
+
+def make():
+    from fuzzyq_bullet.planning import ImprovedFuzzyPlanner
+
+    return ImprovedFuzzyPlanner(FAST)
+
+
+def test_a_scenario_that_cannot_be_is_refused_before_anything_runs():
+    with pytest.raises(UserError, match="start"):
+        run(scenario(obstacles=(cylinder(0.5, 2.5),)))
+
+
+@pytest.mark.parametrize("name", ["open-field", "sparse", "paper-50", "boxes", "mixed"])
+def test_the_bundled_scenarios_keep_what_they_expect(name):
+    task = load_scenario(name)
+    result = result_of(run(task))
+    assert result.outcome == task.expect.outcome
+    assert result.collisions == 0
+    if task.expect.max_time is not None:
+        assert result.time_s <= task.expect.max_time
+
+
+def test_parts_that_come_later_are_null(crossing):
+    result = result_of(crossing)
+    assert result.shortest_path_m is None
+    assert result.spl is None
+    assert result.modes.routine == result.decisions
