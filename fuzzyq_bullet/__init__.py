@@ -1,5 +1,74 @@
-"""A differential-drive robot that finds its way among obstacles it has never seen."""
+"""A differential-drive robot that finds its way among obstacles it has never seen.
+
+    from fuzzyq_bullet import load_scenario, result_of, run
+
+    trajectory = run(load_scenario("mixed"))
+    print(result_of(trajectory).outcome)
+
+Each public name is imported when it is first asked for, so that importing the package costs
+nothing and loads no PyBullet.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from fuzzyq_bullet.version import __version__
 
-__all__ = ["__version__"]
+if TYPE_CHECKING:
+    from fuzzyq_bullet.episode import run
+    from fuzzyq_bullet.errors import UserError
+    from fuzzyq_bullet.metrics import Result, result_of
+    from fuzzyq_bullet.planning import (
+        Decision,
+        Observation,
+        Planner,
+        PlannerSettings,
+        register_planner,
+    )
+    from fuzzyq_bullet.scenario import Scenario, load_scenario, with_options
+    from fuzzyq_bullet.trajectory import Trajectory
+
+__all__ = [
+    "Decision",
+    "Observation",
+    "Planner",
+    "PlannerSettings",
+    "Result",
+    "Scenario",
+    "Trajectory",
+    "UserError",
+    "__version__",
+    "load_scenario",
+    "register_planner",
+    "result_of",
+    "run",
+    "with_options",
+]
+
+_HOMES = {
+    "Decision": "planning",
+    "Observation": "planning",
+    "Planner": "planning",
+    "PlannerSettings": "planning",
+    "Result": "metrics",
+    "Scenario": "scenario",
+    "Trajectory": "trajectory",
+    "UserError": "errors",
+    "load_scenario": "scenario",
+    "register_planner": "planning",
+    "result_of": "metrics",
+    "run": "episode",
+    "with_options": "scenario",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    globals()[name] = value  # from now on it is found without coming here
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

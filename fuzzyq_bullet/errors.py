@@ -1,4 +1,4 @@
-"""The one kind of error that is the user's to mend, and how it reads: what, where, what is right."""
+"""The one kind of error that is the user's to mend: it says what, where, and what is right."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the bundled assets and scenarios lie: beside the package in a checkout, inside it in a wheel."""
+"""Where bundled files lie: beside the package in a checkout, inside it in a wheel."""
 
 from __future__ import annotations
 

@@ -192,6 +192,7 @@ class Trajectory:
             ticks = Ticks(**_columns(arrays, "ticks", Ticks))
             decisions = Decisions(**_columns(arrays, "decisions", Decisions))
             _check(ticks, decisions)
+            _check_collision(head.collision, head.scenario)
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             where = ".".join(str(part) for part in first["loc"])
@@ -279,11 +280,31 @@ def _check(ticks: Ticks, decisions: Decisions) -> None:
         raise ValueError("ticks.time does not increase")
     if ticks.time[-1] - ticks.time[0] > LONGEST:
         raise ValueError(f"ticks.time spans more than {LONGEST:g} s")
-    for name in ("heading", "step"):
-        if not (np.abs(getattr(decisions, name)) < _FAR).all():
-            raise ValueError(f"decisions.{name} holds a number that is not finite, or is absurd")
+    for column in fields(decisions):
+        values = getattr(decisions, column.name)
+        if column.name not in ("heading", "step"):  # only these are never left blank
+            values = values[~np.isnan(values)]
+        if column.name == "reach":  # nothing was looked at, so nothing is known to end
+            values = values[values != np.inf]
+        if not (np.abs(values) < _FAR).all():
+            raise ValueError(f"decisions.{column.name} holds a number that is absurd")
     tick, last = decisions.tick, ticks.time.size - 1
     if tick.min() < 0 or tick.max() > last or (np.diff(tick) < 0).any():
         raise ValueError(f"decisions.tick does not run upwards within 0 to {last}")
     if decisions.mode.min() < 0 or decisions.mode.max() >= len(MODES):
         raise ValueError(f"decisions.mode leaves the range 0 to {len(MODES) - 1}")
+
+
+def _check_collision(collision: Collision | None, scenario: Scenario) -> None:
+    """Check what every reader of a collision relies on.
+
+    Raises:
+        ValueError: If a run cannot have left these numbers.
+    """
+    if collision is None:
+        return
+    numbers = (collision.time, *collision.point, collision.normal_force)
+    if not all(abs(number) < _FAR for number in numbers):
+        raise ValueError("collision holds a number that is not finite, or is absurd")
+    if not -1 <= collision.obstacle < len(scenario.obstacles):
+        raise ValueError(f"collision.obstacle: there is no obstacle {collision.obstacle}")

@@ -140,11 +140,14 @@ def test_it_never_steps_beyond_the_goal():
 
 
 def test_the_guard_caps_the_step_of_the_point_robot_by_one_corridor():
-    observation, asked = seen(lambda _: 0.07)
+    observation, asked = seen(sides(0.8, 0.3, 0.1))
     decision = improved().decide(observation)
-    assert decision.step <= 0.07
-    assert decision.guard == 0.07
     assert asked[1] == [decision.heading]
+    assert decision.guard == 0.8
+    blocked, _ = seen(lambda heading: 0.07 if abs(heading) < 0.7 else 1.0)
+    capped = improved(weights=(1.0, 0.3)).decide(blocked)
+    assert capped.guard == 0.07
+    assert capped.step <= 0.05
     unguarded = improved(guard=False).decide(seen(lambda _: 0.01)[0])
     assert unguarded.step > 0.01
 
@@ -153,7 +156,8 @@ def test_the_guard_of_a_turning_robot_covers_all_it_will_sweep():
     # It faces 1.2 rad to the left of the goal: the fan reaches from there to the new heading.
     observation, asked = seen(lambda _: 1.0, heading=1.2, speed=0.5, motion=MOTION)
     improved().decide(observation)
-    fan = sorted(asked[1])
+    fan = sorted([*asked[0], *asked[1]])  # the line to the goal serves as its last corridor
+    fan = [way for way in fan if way >= -0.01]
     assert fan[0] == pytest.approx(0.0, abs=0.01)
     assert fan[-1] == pytest.approx(1.2)
     assert np.diff(fan).max() < 0.6

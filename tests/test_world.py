@@ -37,7 +37,7 @@ def run_into(world, x, y, heading, speed=0.3, steps=2000):
 
 
 def test_every_one_of_many_obstacles_is_solid(engine):
-    # More than 16: an array of shapes silently keeps no more, and the robot drives through the rest.
+    # An array of shapes silently keeps 16, and the robot drives through the rest.
     row = [cylinder(0.5 + 0.9 * (k % 10), 1.0 + 1.5 * (k // 10)) for k in range(40)]
     world = World(row, Arena(size=(10.0, 10.0)), engine=engine)
     field = Field.of(row, FIELD)
@@ -121,7 +121,7 @@ obstacle = st.one_of(
 )
 def test_a_line_is_never_longer_than_the_way_to_contact(engine, obstacles, origin, heading):
     field = Field.of(obstacles, FIELD)
-    if field.clearance([origin])[0] < ROBOT_RADIUS:
+    if field.clearance([origin])[0] < ROBOT_RADIUS + 0.001:  # it touches something already
         return
     world = World(obstacles, FIELD, engine=engine)
     headings = heading + np.linspace(0.0, 6.0, 12)

@@ -45,6 +45,8 @@ class WheelsDriver:
         )
         self._pilot = Pilot(scenario.robot, TICK_STEPS * TIME_STEP)
         self._twist = STILL
+        # Twice the way that it can go in one tick: whatever is farther away cannot be touched.
+        self._reachable = 2.0 * scenario.robot.max_speed * TICK_STEPS * TIME_STEP
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
@@ -93,6 +95,7 @@ class WheelsDriver:
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
         world, left = self._world, TICK_STEPS
+        watch = self.ticks[-1].clearance <= self._reachable
         while left:
             now = self._twist
             if now == wanted:
@@ -101,7 +104,7 @@ class WheelsDriver:
                 stride = COMMAND_STEPS
                 now = self._twist = ramp(now, wanted, self._limits, COMMAND_STEPS * TIME_STEP)
                 world.robot.command(*wheel_commands(*now))
-            taken, contact = world.advance(stride)
+            taken, contact = world.advance(stride, watch=watch)
             self.steps += taken
             if contact is not None:
                 return contact

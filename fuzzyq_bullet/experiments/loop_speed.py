@@ -76,9 +76,9 @@ def _commands(world: World, whole: Callable[[], int]) -> tuple[dict[int, tuple[f
     taken = 0
     advance, command = world.advance, world.robot.command
 
-    def counting(steps: int) -> tuple[int, Contact | None]:
+    def counting(steps: int, *, watch: bool = True) -> tuple[int, Contact | None]:
         nonlocal taken
-        done = advance(steps)
+        done = advance(steps, watch=watch)
         taken += done[0]
         return done
 

@@ -176,9 +176,12 @@ def _help(rounds: int) -> list[Row]:
     heavy = ("pybullet", "matplotlib")
     code = (
         "import sys\n"
-        "from fuzzyq_bullet.cli.app import _run\n"
+        "from fuzzyq_bullet.cli import main\n"
         "sys.argv = ['fuzzyq', '--help']\n"
-        "_run()\n"
+        "try:\n"
+        "    main()\n"
+        "except SystemExit:\n"
+        "    pass\n"
         f"print([name for name in {heavy!r} if name in sys.modules], file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -4,24 +4,35 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.experiments.timing import interleaved
+from fuzzyq_bullet.physics.camera import add_mesh, shoot
+from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
+from fuzzyq_bullet.resources import asset
 from fuzzyq_bullet.scenario import Goal, Limits, Random, Scenario, Start
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video import record
 from fuzzyq_bullet.video.encoder import Encoder
 from fuzzyq_bullet.video.film import Film
 from fuzzyq_bullet.video.record import moments
-from fuzzyq_bullet.video.scene import PlainScene
+from fuzzyq_bullet.video.scene import still_meshes
 from fuzzyq_bullet.video.stage import Stage
+from fuzzyq_bullet.video.style import HEIGHT, WIDTH
 from fuzzyq_bullet.video.timeline import Timeline
+from fuzzyq_bullet.video.viewpoint import lens_for
+
+Frames: TypeAlias = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -50,15 +61,25 @@ def compare(rounds: int) -> VideoTimes:
         folder = Path(name)
         info = record(trajectory, folder / "pipeline.mp4")
         frames = _ready_made(trajectory, folder / "frames.raw", info.frames)
-        with PlainScene(trajectory) as plain:
+        with _plain_renderer(trajectory) as render:
             works: list[Callable[[], object]] = [
-                lambda: record(trajectory, folder / "pipeline.mp4"),
-                lambda: _encode(frames, folder / "encoding.mp4"),
-                plain.draw,
+                partial(record, trajectory, folder / "pipeline.mp4"),
+                partial(_encode, frames, folder / "encoding.mp4"),
+                render,
             ]
             pipeline, encoding, whole = interleaved(works, rounds, clock=time.perf_counter)
-        del frames
     return VideoTimes(info.frames, info.seconds, pipeline, encoding, whole)
+
+
+@contextmanager
+def _plain_renderer(trajectory: Trajectory) -> Iterator[Callable[[], object]]:
+    """Yield the plain way to a frame: TinyRenderer over all of the scene, at the video's size."""
+    lens = lens_for(trajectory, (WIDTH, HEIGHT))
+    with Engine() as engine:
+        for mesh in still_meshes(trajectory, lens)[0]:
+            add_mesh(engine, mesh)
+        engine.load(asset("robot.urdf"), position=(5.0, 5.0, 0.0), visible=True)
+        yield partial(shoot, engine, lens, (0, 0, WIDTH, HEIGHT))
 
 
 def _trajectory() -> Trajectory:
@@ -75,9 +96,9 @@ def _trajectory() -> Trajectory:
     )
 
 
-def _ready_made(trajectory: Trajectory, path: Path, count: int) -> np.memmap:
+def _ready_made(trajectory: Trajectory, path: Path, count: int) -> Frames:
     film = Film()
-    frames = np.memmap(path, dtype=np.uint8, mode="w+", shape=(count, film.planes.size))
+    frames: Frames = np.memmap(path, dtype=np.uint8, mode="w+", shape=(count, film.planes.size))
     with Stage(trajectory) as stage:
         for k, moment in enumerate(moments(Timeline(trajectory), 1.0)):
             film.apply(stage.patches(moment))
@@ -85,7 +106,7 @@ def _ready_made(trajectory: Trajectory, path: Path, count: int) -> np.memmap:
     return frames
 
 
-def _encode(frames: np.memmap, path: Path) -> None:
+def _encode(frames: Frames, path: Path) -> None:
     film = Film()
     with Encoder(path) as encoder:
         for planes in frames:

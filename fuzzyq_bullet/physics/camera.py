@@ -195,8 +195,8 @@ def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Pic
         ValueError: If the picture would be empty or absurdly large.
     """
     with Engine() as engine:
-        owner = [_add(engine, mesh) for mesh in meshes]
-        picture = _shoot(engine, lens, (0, 0, *lens.size), oversampling)
+        owner = [add_mesh(engine, mesh) for mesh in meshes]
+        picture = shoot(engine, lens, (0, 0, *lens.size), oversampling)
     lookup = np.full(max(owner, default=0) + 2, NOTHING, dtype=np.int32)
     for index, body in enumerate(owner):
         lookup[body] = index
@@ -210,7 +210,7 @@ class RobotCamera:
         self._lens = lens
         self._oversampling = oversampling
         self._engine = Engine()
-        self._robot = self._engine.load(asset("robot.urdf"))
+        self._robot = self._engine.load(asset("robot.urdf"), visible=True)
         # PyBullet places the centre of mass, everything else here speaks of the base frame.
         self._mass = self._engine.api.getDynamicsInfo(
             self._robot, -1, physicsClientId=self._engine.client
@@ -238,7 +238,7 @@ class RobotCamera:
             (0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)),
             physicsClientId=self._engine.client,
         )
-        return _shoot(self._engine, self._lens, window, self._oversampling)
+        return shoot(self._engine, self._lens, window, self._oversampling)
 
     def close(self) -> None:
         """Free the engine."""
@@ -251,7 +251,8 @@ class RobotCamera:
         self.close()
 
 
-def _add(engine: Engine, mesh: Mesh) -> int:
+def add_mesh(engine: Engine, mesh: Mesh) -> int:
+    """Put a surface into an engine, to be seen and not to be touched, and return its body id."""
     api = engine.api
     shape = api.createVisualShape(
         api.GEOM_MESH,
@@ -266,7 +267,14 @@ def _add(engine: Engine, mesh: Mesh) -> int:
     return body
 
 
-def _shoot(engine: Engine, lens: Lens, window: Window, oversampling: int) -> Picture:
+def shoot(engine: Engine, lens: Lens, window: Window, oversampling: int = 1) -> Picture:
+    """Return what a lens sees of all that is in an engine, within a window of its picture.
+
+    Its mask holds body ids.
+
+    Raises:
+        ValueError: If the picture would be empty or absurdly large.
+    """
     left, top, right, bottom = window
     width, height = (right - left) * oversampling, (bottom - top) * oversampling
     if not (0 < width <= MAX_SIZE and 0 < height <= MAX_SIZE):

@@ -98,16 +98,20 @@ class Engine:
         position: tuple[float, float, float] = (0.0, 0.0, 0.0),
         yaw: float = 0.0,
         fixed: bool = False,
+        visible: bool = False,
     ) -> int:
-        """Load a URDF and return its body id."""
+        """Load a URDF and return its body id; its visuals only where it is to be ``visible``."""
         if not path.is_file():  # loadURDF on a directory kills the process
             raise FileNotFoundError(path)
+        flags = pybullet.URDF_USE_IMPLICIT_CYLINDER | pybullet.URDF_USE_INERTIA_FROM_FILE
+        if not visible:
+            flags |= pybullet.URDF_IGNORE_VISUAL_SHAPES
         body: int = pybullet.loadURDF(
             str(path),
             basePosition=position,
             baseOrientation=pybullet.getQuaternionFromEuler((0.0, 0.0, yaw)),
             useFixedBase=fixed,
-            flags=pybullet.URDF_USE_IMPLICIT_CYLINDER | pybullet.URDF_USE_INERTIA_FROM_FILE,
+            flags=flags,
             physicsClientId=self.client,
         )
         return body

@@ -14,7 +14,8 @@ SPREAD = np.array([0.11, 0.34, 0.56, 0.75, 0.91, 1.0])
 """Offsets of the rays on either side, as parts of the corridor's half width.
 
 Neighbours in the middle are 0.05 m apart, the least width of an obstacle; towards the rim, where
-the front of the disc falls back ever faster, they are denser.
+the front of the disc falls back ever faster, they are denser. The last but one runs just outside
+the robot's own side, so that not even the flattest graze along a wall gets past it.
 """
 
 

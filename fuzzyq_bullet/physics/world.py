@@ -53,6 +53,7 @@ class World:
         engine: Engine | None = None,
     ) -> None:
         self._owns_engine = engine is None
+        self._arena = arena
         self.engine = engine or Engine()
         self.engine.reset()
         self._api = self.engine.api
@@ -63,19 +64,20 @@ class World:
         self.walls = self.engine.load_text(walls_urdf(arena)) if arena.walls else None
         self._faces = [self._build_faces(*mesh) for mesh in meshes(obstacles, arena)]
         self.robot = Robot(self.engine)
-        self._solids = [body for body in (self._obstacles, self.walls) if body is not None]
         self._group()
         self._lines = LineBundle(ROBOT_RADIUS, SENSOR_MARGIN, SENSOR_RANGE, BODY_HEIGHT)
         self._last_clearance = CLEARANCE_RANGE
         self._last_asked = (math.nan, math.nan)
 
-    def advance(self, steps: int) -> tuple[int, Contact | None]:
+    def advance(self, steps: int, *, watch: bool = True) -> tuple[int, Contact | None]:
         """Advance the physics, looking for contact after every step.
 
         A contact counts when it carries a force; of several the strongest is returned.
 
         Args:
             steps: Physics steps to take.
+            watch: False only where the robot cannot reach anything within these steps, because
+                nothing is as near as that: then there is no contact to look for.
 
         Returns:
             Steps taken, fewer than asked when the robot's body touched something, and the contact.
@@ -83,6 +85,10 @@ class World:
         # Arguments by position: this is the innermost loop, and keywords cost a microsecond.
         step, touching = self._api.stepSimulation, self._api.getContactPoints
         body, client = self.robot.body, self.engine.client
+        if not watch:
+            for _ in range(steps):
+                step(client)
+            return steps, None
         for taken in range(1, steps + 1):
             step(client)
             points = touching(body, -1, -1, -2, client)
@@ -122,10 +128,13 @@ class World:
         search = self._last_clearance + moved + 0.01
         if not search <= CLEARANCE_RANGE:  # also when nothing was asked before
             search = CLEARANCE_RANGE
+        width, depth = self._arena.size
+        near_wall = min(x, width - x, y, depth - y) - ROBOT_RADIUS <= search
         nearest = min(
             (
                 point[8]
-                for body in self._solids
+                for body in (self._obstacles, self.walls if near_wall else None)
+                if body is not None
                 for point in self._api.getClosestPoints(
                     self.robot.body,
                     body,

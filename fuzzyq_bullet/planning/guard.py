@@ -13,6 +13,8 @@ RESERVE = 0.02
 corner stands between two of its rays."""
 NARROW = math.radians(2.0)
 """Turns up to this stay within the margin of the one corridor along the new heading."""
+SAME = math.radians(0.5)
+"""A line already cast serves for headings as near to it as this."""
 WIDEST = math.radians(90.0)
 """Further round than this the robot does not get before it stands."""
 
@@ -24,7 +26,7 @@ def guarded(decision: Decision, observation: Observation) -> Decision:
     """
     if observation.motion is not None:
         return _guarded_on_wheels(decision, observation, observation.motion)
-    [free] = observation.sense((decision.heading,)).tolist()
+    [free] = _free(decision, observation, [decision.heading])
     return replace(decision, step=_usable(free, decision.step), guard=free)
 
 
@@ -44,7 +46,7 @@ def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Mot
     spacing = _spacing(motion, observation.speed)
     passed = [0.0, *_spread(0.0, coast, spacing)]
     wanted = _spread(start, turn, spacing)
-    free = observation.sense([facing + way for way in (*passed, *wanted)]).tolist()
+    free = _free(decision, observation, [facing + way for way in (*passed, *wanted)])
 
     reach = min(free[: len(passed)]) - RESERVE
     heading, ahead = facing + start if wanted else decision.heading, reach + RESERVE
@@ -61,6 +63,20 @@ def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Mot
         reach=max(0.0, min(reach, decision.reach)),
         guard=ahead,
     )
+
+
+def _free(decision: Decision, observation: Observation, headings: list[float]) -> list[float]:
+    """Return the free distance along each heading, from the lines already cast where one serves."""
+    lines, lengths = decision.lines.tolist(), decision.lengths.tolist()
+    known: dict[float, float] = {}
+    for heading in headings:
+        for line, length in zip(lines, lengths, strict=True):
+            if abs(wrap_angle(line - heading)) <= SAME:
+                known[heading] = length
+    missing = [heading for heading in headings if heading not in known]
+    if missing:
+        known.update(zip(missing, observation.sense(missing).tolist(), strict=True))
+    return [known[heading] for heading in headings]
 
 
 def _usable(free: float, step: float) -> float:

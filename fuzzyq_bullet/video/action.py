@@ -1,0 +1,141 @@
+"""Panel 4: what the robot does: turn and step decided, speed, way to the goal, room around."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video.story import off_goal_line
+from fuzzyq_bullet.video.style import ACTION
+from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
+
+_DIAL = (108, 122)
+_RADIUS = 84
+_FACTS = 226
+_ROW = 44
+_BAR: paint.Box = (60, 187, 126, 198)
+_WIDEST = math.radians(100.0)
+"""A turn beyond this leaves the dial's needle at its end."""
+
+
+class Action:
+    """Panel 4 of one run."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._decisions = trajectory.decisions
+        self._goal = trajectory.scenario.goal.position
+        steps = trajectory.decisions.step
+        known = steps[np.isfinite(steps)]
+        self._longest = max(float(known.max()) if known.size else 0.0, 1e-6)
+        card = paint.card(ACTION, "4  ACTS")
+        card.paste(style.LINE, mask=paint.mask((0, 0, *ACTION.size), _dial_face))
+        paint.write(card, (14, 199), "step", style.MUTED, 17)
+        for row, name in enumerate(("speed", "to the goal", "nearest thing", "weights ω")):
+            paint.write(card, (_FACTS, 40 + _ROW * row), name, style.MUTED, 16)
+        self._card = card
+        self._shown: list[object] = []
+
+    def draw(self, moment: Moment) -> list[Patch]:
+        """Return what changed since last time."""
+        index = moment.decision
+        weights = (math.nan, math.nan)
+        turn = step = math.nan
+        if index != NO_DECISION:
+            first, second = self._decisions.weights[index].tolist()
+            weights, step = (first, second), float(self._decisions.step[index])
+            turn = round(self._turn(moment), 2)
+        away = math.dist(moment.position, self._goal)
+        facts = (
+            f"{abs(moment.speed):.2f} m/s",
+            f"{away:.2f} m" if away < 100 else f"{away:.0f} m",
+            f"{moment.clearance:.2f} m" if math.isfinite(moment.clearance) else "far away",
+            "–" if math.isnan(sum(weights)) else f"{weights[0]:.2f} · {weights[1]:.2f}",
+        )
+        decided = (turn, step) if math.isfinite(turn) else None
+        fresh = not self._shown
+        before = self._shown or [None] * (len(facts) + 1)
+        self._shown = [*facts, decided]
+        patches = [Patch(ACTION.x, ACTION.y, self._card)] if fresh else []
+        for row, (fact, old) in enumerate(zip(facts, before, strict=False)):
+            if fact != old:
+                patches.append(self._fact(row, fact))
+        if decided is not None and decided != before[-1]:
+            patches.append(self._decided(turn, step))
+        return patches
+
+    def _fact(self, row: int, fact: str) -> Patch:
+        top = 46 + _ROW * row
+        image = Image.new("RGB", (ACTION.width - _FACTS - 4, 22), style.CARD)
+        text, size = style.fitting(fact, image.width, (24, 22, 20), bold=True)
+        paint.write(image, (0, 64 + _ROW * row - top), text, style.TEXT, size, bold=True)
+        return Patch(ACTION.x + _FACTS, ACTION.y + top, image)
+
+    def _decided(self, turn: float, step: float) -> Patch:
+        box = (6, 26, _FACTS - 4, ACTION.height - 6)
+        image = self._card.crop(box)
+        _draw_turn(image, box, turn)
+        self._draw_step(image, box, step)
+        return Patch(ACTION.x + box[0], ACTION.y + box[1], image)
+
+    def _turn(self, moment: Moment) -> float:
+        """Return the decided turn (rad) away from the middle line, else from the goal."""
+        lean = off_goal_line(self._decisions, moment.decision)
+        if math.isfinite(lean):
+            return lean
+        (x, y), (goal_x, goal_y) = moment.position, self._goal
+        bearing = math.atan2(goal_y - y, goal_x - x)
+        return math.remainder(float(self._decisions.heading[moment.decision]) - bearing, math.tau)
+
+    def _draw_step(self, image: Image.Image, box: paint.Box, step: float) -> None:
+        left, top, right, bottom = _BAR
+        pen = ImageDraw.Draw(image)
+        pen.rectangle((left - box[0], top - box[1], right - box[0], bottom - box[1]), style.LINE)
+        if not math.isfinite(step):
+            return
+        end = left + round(min(max(step / self._longest, 0.0), 1.0) * (right - left))
+        pen.rectangle((left - box[0], top - box[1], end - box[0], bottom - box[1]), style.TEXT)
+        at = (right + 8 - box[0], 199 - box[1])
+        paint.write(image, at, f"{step:.2f} m", style.TEXT, 19, bold=True)
+
+
+def _draw_turn(image: Image.Image, box: paint.Box, turn: float) -> None:
+    shown = min(max(turn, -_WIDEST), _WIDEST)
+    x, y = _DIAL
+    around = [(x - _RADIUS, y - _RADIUS), (x + _RADIUS, y + 12)]
+
+    def sweep(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        up, end = -90.0, -90.0 - math.degrees(shown)
+        corners = at.disc(_DIAL, _RADIUS)
+        pen.arc(corners[0] + corners[1], min(up, end), max(up, end), 255, 9 * at.factor)
+
+    def needle(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        way = np.array((-math.sin(shown), -math.cos(shown)))
+        aside = np.array((way[1], -way[0]))
+        tip = _DIAL + way * (_RADIUS - 14)
+        pen.polygon(at(np.stack([tip, _DIAL + aside * 5, _DIAL - aside * 5])), fill=255)
+        pen.ellipse(at.disc(_DIAL, 8), fill=255)
+
+    paint.stamp(image, box, around, 4, style.LEFT if turn > 0 else style.RIGHT, sweep)
+    paint.stamp(image, box, around, 4, style.TEXT, needle)
+    degrees = round(math.degrees(abs(turn)))
+    text = "straight" if degrees < 1 else f"{degrees}° {'left' if turn > 0 else 'right'}"
+    paint.write(image, (x - box[0], 157 - box[1]), text, style.TEXT, 24, bold=True, align="m")
+    below = (x - box[0], 176 - box[1])
+    paint.write(image, below, "of the line to the goal", style.MUTED, 15, align="m")
+
+
+def _dial_face(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+    corners = at.disc(_DIAL, _RADIUS)
+    pen.arc(corners[0] + corners[1], 180, 360, 255, 9 * at.factor)
+    for degrees in (-90, -45, 0, 45, 90):
+        way = np.array((math.sin(math.radians(degrees)), -math.cos(math.radians(degrees))))
+        ends = np.stack([_DIAL + way * (_RADIUS - 16), _DIAL + way * (_RADIUS - 11)])
+        pen.line(at(ends), 255, 2 * at.factor)

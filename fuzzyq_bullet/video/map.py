@@ -1,0 +1,177 @@
+"""The map: everything from straight above, with the way so far and the detection lines."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video.marks import cross, diamond, grid_step
+from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, extent, footprint
+from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed
+from fuzzyq_bullet.video.style import MAP
+from fuzzyq_bullet.video.timeline import Steady
+from fuzzyq_bullet.video.viewpoint import extent_of
+
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw
+
+    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video.timeline import Moment
+
+Floats: TypeAlias = NDArray[np.float64]
+
+_PADDING = 12
+_LINE = 3.6
+"""Width of a detection line (pixels)."""
+_LEAST_ROBOT = 6.0
+"""The robot is never drawn with a smaller radius (pixels)."""
+
+
+class Map:
+    """The map of one run."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        x0, y0, x1, y1 = extent_of(trajectory)
+        width, height = MAP.size
+        self._scale = min((width - 2 * _PADDING) / (x1 - x0), (height - 2 * _PADDING) / (y1 - y0))
+        self._middle = ((x0 + x1) / 2, (y0 + y1) / 2)
+        self._area = (x0, y0, x1, y1)
+        positions = trajectory.ticks.position
+        self._trail = paint.Trail(self._background(trajectory), positions, self.spot)
+        self._steady = Steady(self._scale)
+        self._sensed: Sensed | None = None
+        self._changed: paint.Box | None = (0, 0, *MAP.size)
+
+    def spot(self, points: ArrayLike) -> Floats:
+        """Return where points (m), shape (N, 2), lie in the card (pixels)."""
+        p = (np.asarray(points, dtype=np.float64).reshape(-1, 2) - self._middle) * self._scale
+        return np.asarray(p * (1.0, -1.0) + (MAP.width / 2, MAP.height / 2))
+
+    def draw(
+        self, moment: Moment, sensed: Sensed | None, hit: tuple[float, float] | None = None
+    ) -> Patch | None:
+        """Return what changed since the last moment drawn; ``hit`` marks a collision (m)."""
+        if not self._steady.moved(moment) and sensed is self._sensed:
+            return None
+        self._sensed = sensed
+        grown = self._trail.follow(moment.tick)
+        centre = self.spot([moment.position])[0]
+        radius = max(_LEAST_ROBOT, ROBOT_RADIUS * self._scale)
+        strokes = [] if sensed is None else [self._line(sensed, *line) for line in sensed.lines]
+        parts = [
+            paint.box_around(
+                np.stack([centre, *np.reshape(strokes, (-1, 2))]), radius + 3, MAP.size
+            )
+        ]
+        target = None
+        if sensed is not None and sensed.target is not None:
+            target = self.spot([sensed.target])[0]
+            parts.append(paint.box_around(target, 12, MAP.size))
+        if hit is not None:
+            parts.append(paint.box_around(self.spot([hit]), 20, MAP.size))
+        now = paint.joined(parts)
+        box = paint.joined([now, self._changed, grown])
+        self._changed = now
+        if box is None:
+            return None
+
+        image = self._trail.image.crop(box)
+        for stroke, colour in zip(strokes, style.LINES, strict=False):
+            _draw_line(image, box, stroke, colour)
+        if target is not None:
+            diamond(image, box, target, 8.0)
+        _robot(image, box, centre, -moment.heading, radius)
+        if hit is not None:
+            cross(image, box, self.spot([hit])[0], 10.0)
+        return Patch(MAP.x + box[0], MAP.y + box[1], image)
+
+    def _line(self, sensed: Sensed, heading: float, length: float) -> Floats:
+        """Return a detection line from the robot's rim to where the robot would touch something."""
+        way = np.array((math.cos(heading), math.sin(heading)))
+        ends = [sensed.origin + way * sensed.radius, sensed.origin + way * (sensed.radius + length)]
+        return self.spot(ends)
+
+    def _background(self, trajectory: Trajectory) -> Image.Image:
+        image = paint.card(MAP)
+        scenario = trajectory.scenario
+        x0, y0, x1, y1 = self._area
+        low, high = self.spot([(x0, y1)])[0], self.spot([(x1, y0)])[0]
+        field = paint.box_around([low, high], 0, MAP.size)
+        assert field is not None
+        step = grid_step(max(x1 - x0, y1 - y0))
+        seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+        if field[3] <= MAP.height - 18 or field[0] > 100:
+            note = (14, MAP.height - 6)
+            paint.write(image, note, f"squares of {step:g} m", style.MUTED, 14)
+
+        def ground(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            pen.rectangle(at([low, high]), fill=255)
+
+        def grid(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            for x in np.arange(math.ceil(x0 / step), x1 / step) * step:
+                pen.line(at(self.spot([(x, y0), (x, y1)])), 255, at.factor)
+            for y in np.arange(math.ceil(y0 / step), y1 / step) * step:
+                pen.line(at(self.spot([(x0, y), (x1, y)])), 255, at.factor)
+
+        def obstacles(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            for obstacle in scenario.obstacles:
+                x, y = obstacle.position
+                r = extent(obstacle)
+                if x + r > x0 and x - r < x1 and y + r > y0 and y - r < y1:
+                    outline = footprint(obstacle, corners_for(r * self._scale))
+                    pen.polygon(at(self.spot(clipped(outline, seen))), fill=255)
+
+        def walls(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            pen.rectangle(at([low, high]), outline=255, width=2 * at.factor)
+
+        def start(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            centre = self.spot([scenario.start.position])[0]
+            radius = max(5.0, ROBOT_RADIUS * self._scale)
+            pen.ellipse(at.disc(centre, radius), outline=255, width=2 * at.factor)
+
+        goal_at = self.spot([scenario.goal.position])[0]
+        goal_radius = max(7.0, scenario.goal.radius * self._scale)
+
+        def goal(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            pen.ellipse(at.disc(goal_at, goal_radius), fill=100, outline=255, width=2 * at.factor)
+
+        def flag(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            x, y = goal_at
+            pen.line(at([(x, y), (x, y - 21)]), 255, 2 * at.factor)
+            pen.polygon(at([(x, y - 22), (x + 14, y - 16), (x, y - 10)]), fill=255)
+
+        layers = [(ground, style.GROUND), (grid, style.GRID), (obstacles, style.OBSTACLE)]
+        if scenario.arena.walls:
+            layers.append((walls, style.WALL))
+        for draw, colour in [*layers, (start, style.FAINT), (goal, style.GOAL), (flag, style.GOAL)]:
+            layer = paint.mask(field, draw)
+            image.paste(colour, (field[0], field[1]), layer)
+        return image
+
+
+def _draw_line(image: Image.Image, box: paint.Box, stroke: Floats, colour: style.Colour) -> None:
+    def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        paint.polyline(pen, at(stroke), 255, _LINE * at.factor)
+
+    paint.stamp(image, box, stroke, _LINE, colour, draw)
+
+
+def _robot(
+    image: Image.Image, box: paint.Box, centre: Floats, heading: float, radius: float
+) -> None:
+    """Draw the robot's disc; ``heading`` is clockwise, as the picture's y points down."""
+    nose = arrow((float(centre[0]), float(centre[1])), heading, radius * 1.5)
+
+    def body(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        pen.ellipse(at.disc(centre, radius), fill=255)
+
+    def mark(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        pen.polygon(at(nose), fill=255)
+
+    paint.stamp(image, box, [centre], radius + 1, style.ROBOT, body)
+    paint.stamp(image, box, [centre], radius + 1, style.PAGE, mark)

@@ -1,0 +1,179 @@
+"""Panel 2: what the distances mean to the fuzzy controller: its sets, and where the values lie."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video.style import MEANING
+from fuzzyq_bullet.video.timeline import NO_DECISION
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.fuzzy.sets import Variable
+    from fuzzyq_bullet.trajectory import Decisions
+
+Floats: TypeAlias = NDArray[np.float64]
+
+NEAR_WORDS = ("very near", "near", "medium", "far", "very far")
+SIDE_WORDS = ("right much freer", "right freer", "alike", "left freer", "left much freer")
+
+_PLOT_HEIGHT = 46
+_LEFT = 14
+_WIDTH = MEANING.width - 2 * _LEFT
+_LEVELS = 24
+"""Steps in which a membership lights its set."""
+_DIMMED = [[round(v * 0.8 * level / _LEVELS) for v in range(256)] for level in range(_LEVELS + 1)]
+
+
+class Sets:
+    """The sets of one variable as a plot with the current value marked.
+
+    Args:
+        variable: Whose sets.
+        name: What it is called in plain words.
+        words: What each set is called in plain words.
+        top: Upper edge in the card (pixels).
+        mirrored: Whether greater values are drawn further left: where Df is greater, more room is
+            on the left.
+    """
+
+    def __init__(
+        self, variable: Variable, name: str, words: tuple[str, ...], top: int, *, mirrored: bool
+    ) -> None:
+        self._variable = variable
+        self._name = name
+        self._words = words
+        self._box = (_LEFT, top + 22, _LEFT + _WIDTH, top + 22 + _PLOT_HEIGHT)
+        self._top = top
+        self._mirrored = mirrored
+        x = np.linspace(*variable.domain, 121)
+        curves = variable.memberships(x)
+        self._areas, self._curves = [], []
+        for curve in curves:
+            points = np.array(
+                [self._at(a, b) for a, b in zip(x.tolist(), curve.tolist(), strict=True)]
+            )
+            ends = [(points[-1, 0], self._box[3]), (points[0, 0], self._box[3])]
+            self._areas.append(_drawn(self._box, np.concatenate([points, ends]), fill=True))
+            self._curves.append(_drawn(self._box, points, fill=False))
+        self._dot = paint.mask(
+            (0, 0, 12, 12), lambda pen, at: pen.ellipse(at.disc((6, 6), 5.0), 255)
+        )
+        self.top = top
+        self._shown: tuple[object, ...] | None = None
+        blank = Image.new("RGB", (MEANING.width, 88), style.CARD)
+        paint.write(blank, (_LEFT, 16), name, style.MUTED, 17)
+        for curve_mask in self._curves:
+            blank.paste(style.FAINT, self._inside(*self._box[:2]), curve_mask)
+        base = self._box[3] - top
+        ImageDraw.Draw(blank).line((self._box[0], base, self._box[2], base), style.FAINT)
+        self._blank = blank
+
+    def _inside(self, x: float, y: float) -> tuple[int, int]:
+        """Return a point of the card as one of this plot's part of it."""
+        return round(x), round(y) - self._top
+
+    def _at(self, value: float, membership: float) -> tuple[float, float]:
+        low, high = self._variable.domain
+        part = (self._variable.clip(value) - low) / (high - low)
+        if self._mirrored:
+            part = 1.0 - part
+        return (
+            self._box[0] + part * (self._box[2] - self._box[0]),
+            self._box[3] - 1 - membership * (self._box[3] - self._box[1] - 4),
+        )
+
+    def draw(self, value: float, memberships: Floats) -> Image.Image | None:
+        """Return the plot with value and memberships marked, None if it looks as last time."""
+        known = math.isfinite(value) and bool(np.isfinite(memberships).all())
+        # Finer differences cannot be seen.
+        levels = [
+            round(one * _LEVELS) for one in np.clip(np.nan_to_num(memberships), 0, 1).tolist()
+        ]
+        x = round(self._at(value, 0.0)[0]) if known else None
+        if (x, *levels) == self._shown:
+            return None
+        self._shown = (x, *levels)
+
+        image = self._blank.copy()
+        origin = self._inside(*self._box[:2])
+        strongest = int(np.argmax(memberships)) if known else -1
+        for area, curve, level in zip(self._areas, self._curves, levels, strict=True):
+            if level:
+                image.paste(style.HEAT, origin, area.point(_DIMMED[level]))
+                image.paste(style.mixed(style.FAINT, style.TEXT, level / _LEVELS), origin, curve)
+        text = self._words[strongest] if known else "–"
+        paint.write(image, (_LEFT + _WIDTH, 16), text, style.TEXT, 17, bold=True, align="r")
+        self._write_labels(image, levels, strongest)
+        if x is not None:
+            top, bottom = self._box[1] - self._top, self._box[3] - self._top
+            ImageDraw.Draw(image).line((x, top - 2, x, bottom + 2), style.TEXT, 2)
+            for level in levels:
+                if level > 1:
+                    _, y = self._inside(*self._at(value, level / _LEVELS))
+                    image.paste(style.TEXT, (x - 6, y - 6), self._dot)
+        return image
+
+    def _write_labels(self, image: Image.Image, levels: list[int], strongest: int) -> None:
+        for number, one in enumerate(self._variable.sets):
+            x, _ = self._at(one.center, 0.0)
+            bold = number == strongest
+            half = style.text_width(one.label, 15, bold) / 2
+            x = min(max(x, self._box[0] + half), self._box[2] - half)
+            colour = style.mixed(style.FAINT, style.TEXT, levels[number] / _LEVELS)
+            y = self._box[3] - self._top + 16
+            paint.write(image, (x, y), one.label, colour, 15, bold=bold, align="m")
+
+
+class Meaning:
+    """Panel 2 of one run.
+
+    Args:
+        decisions: What the planner decided.
+        distance: The variable of the distance.
+        difference: The variable of the difference.
+    """
+
+    def __init__(self, decisions: Decisions, distance: Variable, difference: Variable) -> None:
+        self._decisions = decisions
+        self._near = Sets(distance, "room ahead:", NEAR_WORDS, 28, mirrored=False)
+        self._side = Sets(difference, "sides:", SIDE_WORDS, 120, mirrored=True)
+        self._card = paint.card(MEANING, "2  JUDGES")
+        self._decision: int | None = None
+
+    def draw(self, decision: int) -> list[Patch]:
+        """Return what changed since last time."""
+        if decision == self._decision:
+            return []
+        patches = [Patch(MEANING.x, MEANING.y, self._card)] if self._decision is None else []
+        self._decision = decision
+        d, blank = self._decisions, np.full(5, np.nan)
+        known = decision != NO_DECISION
+        plots = (
+            (self._near, self._near.draw(float(d.distance[decision]), d.near[decision]))
+            if known
+            else (self._near, self._near.draw(math.nan, blank)),
+            (self._side, self._side.draw(float(d.difference[decision]), d.side[decision]))
+            if known
+            else (self._side, self._side.draw(math.nan, blank)),
+        )
+        for plot, image in plots:
+            if image is not None:
+                patches.append(Patch(MEANING.x, MEANING.y + plot.top, image))
+        return patches
+
+
+def _drawn(box: paint.Box, points: Floats, *, fill: bool) -> Image.Image:
+    def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        if fill:
+            pen.polygon(at(points), fill=255)
+        else:
+            pen.line(at(points), 255, round(1.6 * at.factor), joint="curve")
+
+    return paint.mask(box, draw)

@@ -1,0 +1,291 @@
+"""Smooth drawing with Pillow, which knows no smooth edges: draw larger, then shrink."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PIL import Image, ImageChops, ImageDraw
+
+from fuzzyq_bullet.video import style
+from fuzzyq_bullet.video.film import Patch
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.video.style import Colour, Rect
+
+Floats: TypeAlias = NDArray[np.float64]
+Box: TypeAlias = tuple[int, int, int, int]
+"""Left, top, right, bottom in pixels; right and bottom lie outside."""
+Draw: TypeAlias = Callable[[ImageDraw.ImageDraw, "Scaled"], None]
+
+SMOOTH = 3
+"""How many times larger shapes are drawn that stay."""
+SWIFT = 2
+"""The same for those that move: good enough to the eye, and half the work."""
+_TRAIL_WIDTH = 2.4
+_TRAIL_STEP = 1.5
+_FAR = 20_000.0
+"""Pillow draws nothing sensible beyond some tens of thousands of pixels."""
+
+
+class Scaled:
+    """Turns points of a picture into those of an enlarged part of it."""
+
+    def __init__(self, left: float, top: float, factor: int) -> None:
+        self._offset = np.array((left, top))
+        self.factor = factor
+
+    def __call__(self, points: ArrayLike) -> list[tuple[float, float]]:
+        """Return points, shape (N, 2), as Pillow wants them; without those that are NaN."""
+        moved = (np.asarray(points, dtype=np.float64).reshape(-1, 2) - self._offset) * self.factor
+        # Pillow's pixel centres lie on whole numbers, ours in between.
+        pairs = [(x - 0.5, y - 0.5) for x, y in moved.tolist()]
+        if all(-_FAR < x < _FAR and -_FAR < y < _FAR for x, y in pairs):
+            return pairs
+        known = [(x, y) for x, y in pairs if math.isfinite(x + y)]
+        return [(min(max(x, -_FAR), _FAR), min(max(y, -_FAR), _FAR)) for x, y in known]
+
+    def disc(self, centre: ArrayLike, radius: float) -> list[tuple[float, float]]:
+        """Return the box about a disc."""
+        x, y = np.asarray(centre, dtype=np.float64).tolist()
+        return self([(x - radius, y - radius), (x + radius, y + radius)])
+
+
+class Layer(NamedTuple):
+    """A shape drawn once, to be laid over a picture as often as need be.
+
+    Attributes:
+        box: Where in the picture.
+        cover: How much of each pixel it covers (mode L).
+    """
+
+    box: Box
+    cover: Image.Image
+
+    def lay(self, image: Image.Image, box: Box, colour: Colour) -> None:
+        """Put it in one colour into ``image``, which is the part ``box`` of the picture."""
+        image.paste(colour, (self.box[0] - box[0], self.box[1] - box[1]), self.cover)
+
+
+def layer(
+    extent: ArrayLike,
+    margin: float,
+    size: tuple[int, int],
+    draw: Draw,
+    allowed: Image.Image | None = None,
+    factor: int = SMOOTH,
+) -> Layer | None:
+    """Return a shape as a layer, None when it lies outside of the picture.
+
+    Args:
+        extent: Points of the picture that the shape lies between, shape (N, 2).
+        margin: By how much it may reach beyond them (pixels).
+        size: Size of the picture (pixels).
+        draw: Draws it.
+        allowed: Where in the picture it may be seen, as coverage (mode L); None for everywhere.
+        factor: How many times larger it is drawn.
+    """
+    box = box_around(extent, margin, size)
+    if box is None:
+        return None
+    cover = mask(box, draw, factor)
+    if allowed is not None:
+        cover = ImageChops.multiply(cover, allowed.crop(box))
+    return Layer(box, cover)
+
+
+def mask(box: Box, draw: Draw, factor: int = SMOOTH) -> Image.Image:
+    """Return what ``draw`` draws within ``box`` of a picture, as smooth coverage (mode L)."""
+    left, top, right, bottom = box
+    image = Image.new("L", ((right - left) * factor, (bottom - top) * factor), 0)
+    draw(ImageDraw.Draw(image), Scaled(left, top, factor))
+    return image.reduce(factor)
+
+
+def stamp(
+    image: Image.Image,
+    box: Box,
+    extent: ArrayLike,
+    margin: float,
+    colour: Colour,
+    draw: Draw,
+) -> None:
+    """Draw a shape that changes in every frame into ``image``, the part ``box`` of a picture.
+
+    Args:
+        image: What to draw into.
+        box: Which part of the picture it is; nothing beyond its right and bottom is drawn.
+        extent: Points of the picture that the shape lies between, shape (N, 2).
+        margin: By how much it may reach beyond them (pixels).
+        colour: Its colour.
+        draw: Draws it.
+    """
+    drawn = layer(extent, margin, (box[2], box[3]), draw, factor=SWIFT)
+    if drawn is not None:
+        drawn.lay(image, box, colour)
+
+
+def rounded(size: tuple[int, int], radius: float = 9.0) -> Draw:
+    """Return what draws a rectangle of ``size`` pixels with round corners."""
+
+    def draw(pen: ImageDraw.ImageDraw, at: Scaled) -> None:
+        corner = (size[0] * at.factor - 1, size[1] * at.factor - 1)
+        pen.rounded_rectangle([(0, 0), corner], radius * at.factor, 255)
+
+    return draw
+
+
+@lru_cache(maxsize=2048)
+def _text_mask(text: str, size: int, bold: bool) -> tuple[Image.Image, tuple[int, int]]:
+    """Return a text as coverage and where its left baseline end lies in it."""
+    font = style.font(size, bold)
+    left, top, right, bottom = font.getbbox(text, anchor="ls")
+    width, height = math.ceil(right) - math.floor(left), math.ceil(bottom) - math.floor(top)
+    image = Image.new("L", (max(width, 1), max(height, 1)), 0)
+    origin = (-math.floor(left), -math.floor(top))
+    ImageDraw.Draw(image).text(origin, text, 255, font, anchor="ls")
+    return image, origin
+
+
+def write(
+    image: Image.Image,
+    at: tuple[float, float],
+    text: str,
+    colour: Colour,
+    size: int,
+    *,
+    bold: bool = False,
+    align: str = "l",
+) -> None:
+    """Write a line of text; most lines recur, so their shapes are kept.
+
+    Args:
+        image: What to write on.
+        at: The baseline's left end, middle or right end (pixels).
+        text: The line.
+        colour: Its colour.
+        size: Its size (pixels).
+        bold: Whether it is bold.
+        align: Which of the three ``at`` is: l, m or r.
+    """
+    if not text:
+        return
+    shape, origin = _text_mask(text, size, bold)
+    advance = style.text_width(text, size, bold)
+    x = at[0] - {"l": 0.0, "m": advance / 2, "r": advance}[align]
+    image.paste(colour, (round(x) - origin[0], round(at[1]) - origin[1]), shape)
+
+
+def polyline(
+    pen: ImageDraw.ImageDraw, points: Sequence[tuple[float, float]], fill: int, width: float
+) -> None:
+    """Draw a line with round joints and ends."""
+    if not points:
+        return
+    thick = max(1, round(width))
+    if len(points) > 1:
+        pen.line(list(points), fill=fill, width=thick, joint="curve")
+    radius = (thick - 1) / 2  # Pillow's outlines include their last pixel
+    for x, y in (points[0], points[-1]):
+        pen.ellipse((x - radius, y - radius, x + radius, y + radius), fill=fill)
+
+
+def box_around(points: ArrayLike, margin: float, size: tuple[int, int]) -> Box | None:
+    """Return the box with even edges about points, within a picture of ``size``; None if empty."""
+    p = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+    if not len(p):
+        return None
+    x0, y0 = p.min(axis=0).tolist()
+    x1, y1 = p.max(axis=0).tolist()
+    if not math.isfinite(x0 + y0 + x1 + y1):
+        return box_around(p[np.isfinite(p).all(axis=1)], margin, size)
+    left, top = (int(max(edge - margin, 0.0) // 2) * 2 for edge in (x0, y0))
+    right = math.ceil(min(x1 + margin, size[0]) / 2) * 2
+    bottom = math.ceil(min(y1 + margin, size[1]) / 2) * 2
+    return (left, top, right, bottom) if right > left and bottom > top else None
+
+
+def joined(boxes: Iterable[Box | None]) -> Box | None:
+    """Return the box about boxes."""
+    known = [box for box in boxes if box is not None]
+    if not known:
+        return None
+    left, top, right, bottom = zip(*known, strict=True)
+    return min(left), min(top), max(right), max(bottom)
+
+
+class Trail:
+    """A picture over which the robot's way grows; it looks the same in however many pieces.
+
+    Args:
+        background: The picture without it.
+        positions: All points of the way (m), shape (T, 2).
+        project: Turns points (m), shape (N, 2), into pixels of the picture.
+        allowed: Where it may be seen, as coverage (mode L); None for everywhere.
+
+    Attributes:
+        image: The picture with the way so far.
+    """
+
+    def __init__(
+        self,
+        background: Image.Image,
+        positions: Floats,
+        project: Callable[[ArrayLike], Floats],
+        allowed: Image.Image | None = None,
+    ) -> None:
+        self.image = background.copy()
+        self._background = background
+        self._positions = positions
+        self._project = project
+        self._allowed = allowed
+        self._line = Image.new("L", background.size, 0)
+        self._tick = 0
+
+    def follow(self, tick: int) -> Box | None:
+        """Draw the way up to a tick and return the box that changed.
+
+        Its last pixels, which the robot covers, wait until there are a few.
+        """
+        if tick <= self._tick:
+            return None
+        ends = self._project(self._positions[[self._tick, tick]])
+        if np.abs(ends[1] - ends[0]).max() < _TRAIL_STEP:
+            return None
+        points = self._project(self._positions[self._tick : tick + 1])
+        self._tick = tick
+        piece = layer(
+            points,
+            _TRAIL_WIDTH + 1,
+            self.image.size,
+            lambda pen, at: polyline(pen, at(points), 255, _TRAIL_WIDTH * at.factor),
+            self._allowed,
+        )
+        if piece is None:
+            return None
+        # The greater of the two, not the sum: overlapping ends must not show.
+        line = ImageChops.lighter(piece.cover, self._line.crop(piece.box))
+        self._line.paste(line, piece.box)
+        patch = self._background.crop(piece.box)
+        patch.paste(style.PATH, mask=line)
+        self.image.paste(patch, piece.box)
+        return piece.box
+
+
+def card(rect: Rect, title: str = "") -> Image.Image:
+    """Return the picture of an empty card with its title."""
+    image = Image.new("RGB", rect.size, style.PAGE)
+    image.paste(style.CARD, mask=mask((0, 0, *rect.size), rounded(rect.size)))
+    write(image, (12, 20), title, style.MUTED, 16, bold=True)
+    return image
+
+
+def patch_of(rect: Rect, image: Image.Image, box: Box | None = None) -> Patch:
+    """Return a part of the picture of ``rect`` as a patch of the frame."""
+    if box is None:
+        return Patch(rect.x, rect.y, image)
+    return Patch(rect.x + box[0], rect.y + box[1], image.crop(box))

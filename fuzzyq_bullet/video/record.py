@@ -1,0 +1,120 @@
+"""From a record to a video, frame by frame, or to one picture of it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+from PIL import Image
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import written_beside
+from fuzzyq_bullet.video.encoder import Encoder
+from fuzzyq_bullet.video.film import Film
+from fuzzyq_bullet.video.stage import Stage, closing
+from fuzzyq_bullet.video.style import FPS, HEIGHT, PAGE, WIDTH
+from fuzzyq_bullet.video.timeline import Moment, Timeline
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from fuzzyq_bullet.trajectory import Trajectory
+
+CLOSING = 1.0
+"""How long the outcome is shown at the end (s)."""
+SLOWEST, FASTEST = 0.1, 100.0
+_ROUNDING = 1e-9
+
+
+class VideoInfo(NamedTuple):
+    """What was written.
+
+    Attributes:
+        frames: Number of frames.
+        seconds: How long the video plays (s).
+        size: Width and height (pixels).
+    """
+
+    frames: int
+    seconds: float
+    size: tuple[int, int]
+
+
+def record(
+    trajectory: Trajectory,
+    path: Path,
+    *,
+    speed: float = 1.0,
+    progress: Callable[[int, int], None] | None = None,
+) -> VideoInfo:
+    """Write a run as an MP4: H.264, 1280 × 720, 30 frames a second.
+
+    The same run gives the same bytes. Frames are handed on one by one; whatever interrupts the
+    work, no unfinished file takes the place of ``path``.
+
+    Args:
+        trajectory: The run.
+        path: The file to write.
+        speed: Seconds of the run in one second of video, 0.1 to 100.
+        progress: Called after each frame with the number of frames done and in total.
+
+    Raises:
+        UserError: If the speed is out of range, ffmpeg is missing or fails, or the file cannot be
+            written.
+    """
+    if not (isinstance(speed, (int, float)) and SLOWEST <= speed <= FASTEST):
+        raise UserError(f"speed {speed!r}: the speed of a video is {SLOWEST:g} to {FASTEST:g}")
+    timeline = Timeline(trajectory)
+    total = frame_count(timeline, speed)
+    film = Film()
+    with (
+        written_beside(path) as part,
+        Stage(trajectory, speed) as stage,
+        Encoder(part, path) as encoder,
+    ):
+        for number, moment in enumerate(moments(timeline, speed), start=1):
+            film.apply(stage.patches(moment))
+            encoder.write(film)
+            if progress is not None:
+                progress(number, total)
+    return VideoInfo(total, total / FPS, (WIDTH, HEIGHT))
+
+
+def frame(trajectory: Trajectory, time: float) -> Image.Image:
+    """Return the frame of a run at a time (s) as a picture; after its end, the one that closes it.
+
+    Raises:
+        UserError: If the time is not a number.
+    """
+    if math.isnan(time):
+        raise UserError("the time of a frame must be a number of seconds")
+    timeline = Timeline(trajectory)
+    moment = timeline.at(time)
+    image = Image.new("RGB", (WIDTH, HEIGHT), PAGE)
+    with Stage(trajectory) as stage:
+        stage.watch(moment)
+        if time > timeline.end:
+            moment = closing(moment)
+        for patch in stage.patches(moment):
+            image.paste(patch.image, (patch.x, patch.y))
+    return image
+
+
+def moments(timeline: Timeline, speed: float) -> Iterator[Moment]:
+    """Yield the moment of each frame: the run, then its end for as long as the outcome is shown."""
+    running = _running(timeline, speed)
+    for k in range(running):
+        yield timeline.at(timeline.start + k * speed / FPS)
+    last = closing(timeline.at(timeline.end))
+    for _ in range(round(CLOSING * FPS)):
+        yield last
+
+
+def frame_count(timeline: Timeline, speed: float) -> int:
+    """Return the number of frames of a video."""
+    return _running(timeline, speed) + round(CLOSING * FPS)
+
+
+def _running(timeline: Timeline, speed: float) -> int:
+    return math.floor((timeline.end - timeline.start) * FPS / speed + _ROUNDING) + 1

@@ -1,0 +1,111 @@
+"""Panel 3: the rule table, each rule an arrow of its turn and step, lit as strongly as it fires."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video.meaning import NEAR_WORDS
+from fuzzyq_bullet.video.style import RULES
+from fuzzyq_bullet.video.timeline import NO_DECISION
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.fuzzy.rules import RuleBase
+    from fuzzyq_bullet.trajectory import Decisions
+
+_LEFT, _TOP = 86, 48
+_CELL_WIDTH, _CELL_HEIGHT = 36, 32
+_GAP = 2
+_LEVELS = 32
+"""Steps of brightness; finer ones cannot be told apart."""
+_UNLIT: style.Colour = (38, 45, 56)
+
+
+class Rules:
+    """Panel 3 of one run.
+
+    Columns run from "left much freer" to "right much freer", so that rules which turn left stand
+    on the left.
+
+    Args:
+        decisions: What the planner decided.
+        base: The rules, with the outputs turn and step.
+        turn_unit: A_p: the turn that its scale multiplies (rad).
+    """
+
+    def __init__(self, decisions: Decisions, base: RuleBase, turn_unit: float) -> None:
+        self._decisions = decisions
+        self._rows, self._columns = len(base.row.sets), len(base.column.sets)
+        self._arrows = [
+            [_arrow(base, row, column, turn_unit) for column in range(self._columns)]
+            for row in range(self._rows)
+        ]
+        self._image = paint.card(RULES, "3  RULES THAT FIRE")
+        right = _LEFT + self._columns * _CELL_WIDTH - _GAP
+        paint.write(self._image, (_LEFT, 43), "left freer", style.MUTED, 15)
+        paint.write(self._image, (right, 43), "right freer", style.MUTED, 15, align="r")
+        for row, words in enumerate(NEAR_WORDS[: self._rows]):
+            y = _TOP + row * _CELL_HEIGHT + _CELL_HEIGHT // 2 + 4
+            paint.write(self._image, (_LEFT - 8, y), words, style.MUTED, 15, align="r")
+        self._shown: dict[tuple[int, int], tuple[int, bool]] = {}
+        self._decision: int | None = None
+
+    def draw(self, decision: int) -> Patch | None:
+        """Return the panel, or the part of it that changed since last time."""
+        if decision == self._decision:
+            return None
+        self._decision = decision
+        strengths = np.zeros((self._rows, self._columns))
+        if decision != NO_DECISION:
+            strengths = np.clip(np.nan_to_num(self._decisions.rules[decision]), 0.0, 1.0)
+        strongest = float(strengths.max())
+        fresh, changed = not self._shown, []
+        for row, cells in enumerate(strengths.tolist()):
+            for column, strength in enumerate(cells):
+                # The root lifts weak rules into sight; the order of brightness stays.
+                look = (round(math.sqrt(strength) * _LEVELS), strength == strongest > 0.0)
+                if self._shown.get((row, column)) != look:
+                    self._shown[row, column] = look
+                    changed.append(self._draw_cell(row, column, *look))
+        if fresh:
+            return Patch(RULES.x, RULES.y, self._image)
+        box = paint.joined(changed)
+        return None if box is None else paint.patch_of(RULES, self._image, box)
+
+    def _draw_cell(self, row: int, column: int, level: int, strongest: bool) -> paint.Box:
+        x = _LEFT + (self._columns - 1 - column) * _CELL_WIDTH
+        y = _TOP + row * _CELL_HEIGHT
+        lit = level / _LEVELS
+        box = (x, y, x + _CELL_WIDTH - _GAP - 1, y + _CELL_HEIGHT - _GAP - 1)
+        outline = style.TEXT if strongest else None
+        fill = style.mixed(_UNLIT, style.HEAT, lit)
+        ImageDraw.Draw(self._image).rectangle(box, fill, outline, 2)
+        ink = style.PAGE if lit > 0.45 else style.mixed(style.FAINT, style.TEXT, lit)
+        self._image.paste(ink, (x, y), self._arrows[row][column])
+        return box[0], box[1], box[2] + 1, box[3] + 1
+
+
+def _arrow(base: RuleBase, row: int, column: int, turn_unit: float) -> Image.Image:
+    """Return an arrow that points where the rule turns and is as long as it steps."""
+    turn_label, step_label = base.cells[row][column]
+    turn, step = base.outputs
+    angle = {one.label: one.center for one in turn.sets}[turn_label] * turn_unit
+    part = {one.label: one.center for one in step.sets}[step_label] / step.domain[1]
+    size = (_CELL_WIDTH - _GAP, _CELL_HEIGHT - _GAP)
+    length = 10.0 + 14.0 * min(max(part, 0.0), 1.0)
+    way = np.array((-math.sin(angle), -math.cos(angle)))
+    aside = np.array((way[1], -way[0]))
+    middle = np.array(size) / 2
+    tip, tail = middle + way * length / 2, middle - way * length / 2
+    head = np.stack([tip, tip - way * 8 + aside * 5, tip - way * 8 - aside * 5])
+
+    def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        pen.line(at(np.stack([tail, tip - way * 6])), 255, 3 * at.factor)
+        pen.polygon(at(head), fill=255)
+
+    return paint.mask((0, 0, *size), draw)

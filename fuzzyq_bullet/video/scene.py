@@ -1,0 +1,242 @@
+"""The 3-D view: the still world once, and in every frame the robot and what it senses."""
+
+from __future__ import annotations
+
+import math
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PIL import Image, ImageChops, ImageDraw
+
+from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera, photograph
+from fuzzyq_bullet.video import paint, solids, style
+from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video.marks import cross, diamond, grid_step
+from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed
+from fuzzyq_bullet.video.style import SCENE
+from fuzzyq_bullet.video.timeline import Steady
+from fuzzyq_bullet.video.viewpoint import extent_of, lens_for, way
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video.timeline import Moment
+
+Floats: TypeAlias = NDArray[np.float64]
+
+DETAIL = 2
+"""How many times larger everything is rendered, to be shrunk to smooth edges."""
+_FILL, _EDGE = 88, 235
+_SHADOW = np.array([(np.cos(a), np.sin(a)) for a in np.arange(20) * np.pi / 10]) * 0.225
+"""Outline of the robot's shadow about its centre (m)."""
+_SMALLEST = 26.0
+"""A robot that covers fewer pixels than this gets a ring around it."""
+
+
+class Scene:
+    """The 3-D view of one run.
+
+    Attributes:
+        lens: The camera, whose picture is the card ``style.SCENE``.
+    """
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self.lens = lens_for(trajectory, SCENE.size)
+        picture, ground = _still(trajectory, self.lens)
+        self._depth = picture.depth
+        self._ground = ground
+        still = _decorated(picture, ground, trajectory, self.lens)
+        self._trail = paint.Trail(still, trajectory.ticks.position, self._seen, ground)
+        self._sensed: Sensed | None = None
+        away = math.dist(self.lens.eye, self.lens.target)
+        self._steady = Steady(self.lens.pixels_per_radian() / away)
+        self._stains: list[tuple[style.Colour, paint.Layer]] = []
+        self._changed: paint.Box | None = (0, 0, *SCENE.size)
+        with ExitStack() as stack:
+            self._robot = stack.enter_context(RobotCamera(self.lens, DETAIL))
+            self._open = stack.pop_all()
+
+    def close(self) -> None:
+        """Free the robot's renderer."""
+        self._open.close()
+
+    def draw(
+        self, moment: Moment, sensed: Sensed | None, hit: tuple[float, float] | None = None
+    ) -> Patch | None:
+        """Return what changed since the last moment drawn; ``hit`` marks a collision (m)."""
+        if not self._steady.moved(moment) and sensed is self._sensed:
+            return None
+        grown = self._trail.follow(moment.tick)
+        if sensed is not self._sensed:
+            self._sensed = sensed
+            self._stains = self._stained(sensed)
+        shadow = self._stain(moment.position + _SHADOW, edge=0, fill=150)
+        target = None
+        if sensed is not None and sensed.target is not None:
+            target = self._seen([sensed.target])[0]
+        window = self._robot.window(moment.position)
+
+        parts: list[paint.Box | None] = [layer.box for _, layer in self._stains]
+        if shadow is not None:
+            parts.append(shadow.box)
+        if window is not None:
+            parts.append(paint.box_around(np.reshape(window, (2, 2)), 16, SCENE.size))
+        if target is not None:
+            parts.append(paint.box_around(target, 14, SCENE.size))
+        if hit is not None:
+            parts.append(paint.box_around(self._seen([hit]), 20, SCENE.size))
+        now = paint.joined(parts)
+        box = paint.joined([now, self._changed, grown])
+        self._changed = now
+        if box is None:
+            return None
+
+        image = self._trail.image.crop(box)
+        for colour, layer in self._stains:
+            layer.lay(image, box, colour)
+        if shadow is not None:
+            shadow.lay(image, box, style.SHADOW)
+        if target is not None:
+            diamond(image, box, target, 9.0)
+        if window is not None:
+            self._place_robot(image, box, window, moment)
+        if hit is not None:
+            cross(image, box, self._seen([hit])[0], 11.0)
+        return Patch(SCENE.x + box[0], SCENE.y + box[1], image)
+
+    def height_of(self, position: tuple[float, float]) -> float:
+        """Return how far down in the picture a point of the ground (m) is seen (pixels)."""
+        return float(np.nan_to_num(self._seen([position])[0, 1]))
+
+    def _seen(self, points: ArrayLike) -> Floats:
+        flat = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        return self.lens.project(np.column_stack([flat, np.zeros(len(flat))]))
+
+    def _stained(self, sensed: Sensed | None) -> list[tuple[style.Colour, paint.Layer]]:
+        """Return the detection corridors as they lie on the ground, with their colours."""
+        if sensed is None:
+            return []
+        layers = [self._stain(one, edge=_EDGE, fill=_FILL) for one in sensed.corridors]
+        coloured = zip(style.LINES, layers, strict=False)
+        return [(colour, layer) for colour, layer in coloured if layer is not None]
+
+    def _stain(self, outline: ArrayLike, *, edge: int, fill: int) -> paint.Layer | None:
+        """Return a piece of the ground (m) as a layer that covers nothing but ground."""
+        seen = self._seen(outline)
+
+        def draw(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
+            points = scaled(seen)
+            if len(points) >= 3:
+                pen.polygon(points, fill=fill)
+                if edge:
+                    pen.line([*points, points[0]], edge, round(1.7 * scaled.factor))
+
+        return paint.layer(seen, 3, SCENE.size, draw, self._ground, paint.SWIFT)
+
+    def _place_robot(
+        self, image: Image.Image, box: paint.Box, window: paint.Box, moment: Moment
+    ) -> None:
+        """Put the robot into a part of the picture, behind whatever stands in front of it."""
+        k = DETAIL
+        left, top, right, bottom = window
+        robot = self._robot.shoot(window, moment.position, moment.heading)
+        behind = self._depth[top * k : bottom * k, left * k : right * k]
+        visible = (robot.mask >= 0) & (robot.depth < behind)
+        # Shrinking the coloured and the bare pixels together smooths the edge between the two.
+        colour = np.where(visible[..., None], robot.colour, 0).astype(np.uint8)
+        small = Image.fromarray(colour).reduce(k)
+        cover = Image.fromarray(np.where(visible, 255, 0).astype(np.uint8)).reduce(k)
+        at = (left - box[0], top - box[1])
+        here = (*at, at[0] + right - left, at[1] + bottom - top)
+        bare = image.crop(here)
+        bare.paste((0, 0, 0), mask=cover)
+        image.paste(ImageChops.add(bare, small), here)
+        if right - left < _SMALLEST:
+            centre = ((left + right) / 2, (top + bottom) / 2)
+
+            def ring(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
+                outer = scaled.disc(centre, _SMALLEST / 2)
+                pen.ellipse(outer, outline=255, width=2 * scaled.factor)
+
+            paint.stamp(image, box, [centre], _SMALLEST / 2 + 2, style.ROBOT, ring)
+
+
+def still_meshes(trajectory: Trajectory, lens: Lens) -> tuple[list[Mesh], bool]:
+    """Return the surfaces of all that never moves, and whether the first of them is ground."""
+    seen = solids.ground_seen(lens)
+    scenario = trajectory.scenario
+    ground = solids.ground_of(scenario, way(trajectory), seen)
+    low_x, low_y, high_x, high_y = extent_of(trajectory)
+    span = max(high_x - low_x, high_y - low_y)
+    tall = max(min(0.9, 0.25 * span), 0.05 * span)
+    meshes = solids.solids(
+        ground,
+        solids.obstacles_seen(scenario, lens, seen),
+        solids.walls_of(scenario, seen),
+        solids.flag(scenario.goal.position, lens, tall),
+    )
+    return meshes, len(ground) >= 3
+
+
+def _still(trajectory: Trajectory, lens: Lens) -> tuple[Picture, Image.Image]:
+    """Return the picture of all that never moves, and where it shows ground (mode L)."""
+    meshes, grounded = still_meshes(trajectory, lens)
+    picture = photograph(meshes, lens, DETAIL)
+    bare = (picture.mask == 0) & grounded
+    return picture, Image.fromarray(np.where(bare, 255, 0).astype(np.uint8)).reduce(DETAIL)
+
+
+def _decorated(
+    picture: Picture, ground: Image.Image, trajectory: Trajectory, lens: Lens
+) -> Image.Image:
+    """Return the still picture with what is painted on the ground: grid, shadows, start, goal."""
+    colour = picture.colour.copy()
+    colour[picture.mask < 0] = style.CARD
+    image = Image.fromarray(colour).reduce(DETAIL)
+    box = (0, 0, *SCENE.size)
+    scenario = trajectory.scenario
+
+    def seen(points: ArrayLike) -> Floats:
+        flat = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        return lens.project(np.column_stack([flat, np.zeros(len(flat))]))
+
+    def ring(centre: tuple[float, float], radius: float) -> Floats:
+        angle = np.linspace(0.0, 2 * np.pi, 49)
+        return seen(np.stack([np.cos(angle), np.sin(angle)], axis=1) * radius + centre)
+
+    area = solids.ground_seen(lens)
+    low, high = area.min(axis=0), area.max(axis=0)
+    step = grid_step(float((high - low).max()))
+
+    def grid(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
+        for x in np.arange(np.ceil(low[0] / step), high[0] / step) * step:
+            pen.line(scaled(seen([(x, low[1]), (x, high[1])])), 255, scaled.factor)
+        for y in np.arange(np.ceil(low[1] / step), high[1] / step) * step:
+            pen.line(scaled(seen([(low[0], y), (high[0], y)])), 255, scaled.factor)
+
+    def shadows(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
+        for outline in solids.obstacles_seen(scenario, lens, area):
+            for part in np.linspace(0.0, 1.0, 4):
+                pen.polygon(scaled(seen(outline + np.array((0.10, 0.14)) * part)), fill=140)
+
+    def goal(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
+        around = scaled(ring(scenario.goal.position, scenario.goal.radius))
+        pen.polygon(around, fill=110)
+        pen.line(around, 255, 2 * scaled.factor, joint="curve")
+
+    def start(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
+        around = scaled(ring(scenario.start.position, ROBOT_RADIUS))
+        pen.line(around, 200, round(1.5 * scaled.factor), joint="curve")
+
+    for draw, tint in (
+        (grid, style.GRID),
+        (shadows, style.SHADOW),
+        (start, style.FAINT),
+        (goal, style.GOAL),
+    ):
+        image.paste(tint, mask=ImageChops.multiply(paint.mask(box, draw), ground))
+    corners = paint.mask(box, paint.rounded(SCENE.size))
+    framed = Image.new("RGB", SCENE.size, style.PAGE)
+    framed.paste(image, mask=corners)
+    return framed

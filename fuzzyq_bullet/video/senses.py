@@ -1,0 +1,170 @@
+"""Panel 1: what the robot senses. A close-up in which its nose points up, so left is left."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, corridor, extent, footprint
+from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed, sensor_range
+from fuzzyq_bullet.video.solids import walls_of
+from fuzzyq_bullet.video.story import ALIKE
+from fuzzyq_bullet.video.style import SENSES
+from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Steady
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fuzzyq_bullet.trajectory import Trajectory
+
+Floats: TypeAlias = NDArray[np.float64]
+
+_LENS: paint.Box = (8, 28, 182, 202)
+_DIAMETER = _LENS[2] - _LENS[0]
+_FACTOR = 2
+_COLUMN: paint.Box = (192, 26, 314, 208)
+_ROW = 44
+_NAMES = ("left", "ahead", "right")
+_MOST = 400
+"""Obstacles drawn in the close-up at most: the nearest."""
+_LARGE = 50.0
+"""An outline that reaches farther (m) is cut before it is drawn: Pillow has its limits."""
+
+
+class Senses:
+    """Panel 1 of one run."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._decisions = trajectory.decisions
+        self._range = sensor_range(trajectory)
+        self._view = self._range + ROBOT_RADIUS + 0.1
+        self._scale = _DIAMETER * _FACTOR / 2 / self._view
+        scenario = trajectory.scenario
+        self._obstacles = scenario.obstacles
+        self._outlines: dict[int, Floats] = {}
+        self._centres = np.array([o.position for o in scenario.obstacles]).reshape(-1, 2)
+        self._extents = np.array([extent(o) for o in scenario.obstacles])
+        everywhere = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * 1e4
+        self._walls = walls_of(scenario, everywhere)
+        self._image = paint.card(SENSES, "1  SENSES")
+        self._blank = self._image.crop(_COLUMN)
+        self._round = paint.mask(
+            (0, 0, _DIAMETER, _DIAMETER),
+            lambda pen, at: pen.ellipse((0, 0, _DIAMETER * at.factor, _DIAMETER * at.factor), 255),
+        )
+        self._steady = Steady(self._scale / _FACTOR)
+        self._decision: int | None = None
+
+    def draw(self, moment: Moment, sensed: Sensed | None) -> list[Patch]:
+        """Return what changed since the last moment drawn."""
+        patches: list[Patch] = []
+        fresh = moment.decision != self._decision
+        if not self._steady.moved(moment) and not fresh:
+            return patches
+        if fresh:
+            column = self._blank.copy()
+            self._write_numbers(column, moment.decision)
+            self._image.paste(column, _COLUMN[:2])
+            if self._decision is None:
+                patches.append(Patch(SENSES.x, SENSES.y, self._image))
+            else:
+                patches.append(Patch(SENSES.x + _COLUMN[0], SENSES.y + _COLUMN[1], column))
+            self._decision = moment.decision
+        view = Image.new("RGB", (_DIAMETER, _DIAMETER), style.CARD)
+        view.paste(self._close_up(moment, sensed).reduce(_FACTOR), mask=self._round)
+        patches.append(Patch(SENSES.x + _LENS[0], SENSES.y + _LENS[1], view))
+        return patches
+
+    def _close_up(self, moment: Moment, sensed: Sensed | None) -> Image.Image:
+        side = _DIAMETER * _FACTOR
+        image = Image.new("RGB", (side, side), style.GROUND)
+        pen = ImageDraw.Draw(image, "RGBA")
+        here = np.array(moment.position)
+        # The robot's nose, its x axis, points up in the picture, its left to the left.
+        cos, sin = math.cos(moment.heading), math.sin(moment.heading)
+        turn = np.array([(sin, -cos), (-cos, -sin)]) * self._scale
+
+        def at(points: Floats) -> list[tuple[float, float]]:
+            moved = (points - here) @ turn.T + side / 2
+            return [(x, y) for x, y in moved.tolist()]
+
+        corner = self._view * 1.5
+        near = here + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * corner
+        gaps = np.hypot(*(self._centres - here).T) - self._extents
+        seen = np.flatnonzero(gaps < self._view)
+        if len(seen) > _MOST:
+            seen = seen[np.argsort(gaps[seen])[:_MOST]]
+        for index in seen.tolist():
+            _fill(pen, at, self._outline(index), near, style.OBSTACLE)
+        for wall in self._walls:
+            _fill(pen, at, wall, near, style.WALL)
+
+        if sensed is not None:
+            for (heading, length), colour in zip(sensed.lines, style.LINES, strict=False):
+                if length < self._range:  # as far as it could see, were nothing there
+                    whole = corridor(sensed.origin, heading, self._range, sensed.radius)
+                    pen.line(at(whole), (*colour, 90), 2)
+            for free, colour in zip(sensed.corridors, style.LINES, strict=False):
+                outline = at(free)
+                pen.polygon(outline, fill=(*colour, 90))
+                pen.line(outline, colour, 3 * _FACTOR // 2)
+            way = np.array((math.cos(sensed.heading), math.sin(sensed.heading)))
+            tip = here + way * (ROBOT_RADIUS + 0.32)
+            pen.line(at(np.stack([here, tip])), style.TEXT, 3 * _FACTOR)
+            pen.polygon(at(arrow((tip[0], tip[1]), sensed.heading, 0.2)), fill=style.TEXT)
+        centre, radius = side / 2, ROBOT_RADIUS * self._scale
+        pen.ellipse(
+            (centre - radius, centre - radius, centre + radius, centre + radius), style.ROBOT
+        )
+        nose = arrow((centre, centre), -math.pi / 2, radius * 1.5)
+        pen.polygon([(x, y) for x, y in nose.tolist()], fill=style.PAGE)
+        return image
+
+    def _outline(self, index: int) -> Floats:
+        if index not in self._outlines:
+            corners = corners_for(float(self._extents[index]) * self._scale)
+            self._outlines[index] = footprint(self._obstacles[index], corners)
+        return self._outlines[index]
+
+    def _write_numbers(self, image: Image.Image, index: int) -> None:
+        lengths = (
+            [math.nan] * 3 if index == NO_DECISION else self._decisions.lengths[index].tolist()
+        )
+        pen = ImageDraw.Draw(image)
+        for row, (name, colour, length) in enumerate(
+            zip(_NAMES, style.LINES, lengths, strict=True)
+        ):
+            top = 2 + _ROW * row
+            pen.rectangle((0, top, 5, top + 36), colour)
+            free = math.isfinite(length) and length >= self._range - 1e-9
+            label = f"{name}, free" if free else name
+            paint.write(image, (14, top + 12), label, style.MUTED, 16)
+            value = f"{length:.2f} m" if math.isfinite(length) else "–"
+            paint.write(image, (14, top + 36), value, style.TEXT, 24, bold=True)
+        difference = math.nan if index == NO_DECISION else float(self._decisions.difference[index])
+        value = f"Df {difference + 0.0:+.1f}" if math.isfinite(difference) else "Df –"
+        top = 2 + _ROW * 3
+        # A planner with a clear way to the goal does not look aside: it calls the sides alike.
+        clear = difference == 0.0 and abs(lengths[0] - lengths[2]) > ALIKE
+        label = "way is clear:" if clear else "left − right"
+        paint.write(image, (14, top + 12), label, style.MUTED, 16)
+        paint.write(image, (14, top + 36), value.replace("-", "−"), style.TEXT, 23, bold=True)
+
+
+def _fill(
+    pen: ImageDraw.ImageDraw,
+    at: Callable[[Floats], list[tuple[float, float]]],
+    outline: Floats,
+    near: Floats,
+    colour: style.Colour,
+) -> None:
+    if np.abs(outline - near[0]).max() > _LARGE:
+        outline = clipped(outline, near)
+    if len(outline) >= 3:
+        pen.polygon(at(outline), fill=colour)

@@ -1,0 +1,120 @@
+"""From where a run is best seen: the whole way in the picture, as large as can be."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzyq_bullet.physics.camera import Lens
+from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
+
+Floats: TypeAlias = NDArray[np.float64]
+
+FIELD_OF_VIEW = math.radians(26.0)
+"""Narrow: far things stay nearly as large as near ones."""
+PITCHES = tuple(math.radians(angle) for angle in (46.0, 52.0, 58.0))
+"""How steeply the camera may look down. Flatter hides the robot, steeper is a second map."""
+YAWS = tuple(math.radians(angle) for angle in (0, -20, 20, -40, 40, -65, 65, 90))
+"""How far it may look past north (rad), to the left positive."""
+MARGIN = 1.3
+"""Least distance (m) from the robot's way to the edge of the picture: a detection line's length."""
+_EDGE = 10
+"""Pixels left free along the edges of the picture."""
+_MOST_POINTS = 4000
+
+
+def way(trajectory: Trajectory) -> Floats:
+    """Return start, goal and at most a few thousand points of the path (m), shape (N, 2)."""
+    path = trajectory.ticks.position
+    stride = max(1, len(path) // _MOST_POINTS)
+    scenario = trajectory.scenario
+    ends = [scenario.start.position, scenario.goal.position, path[-1]]
+    return np.concatenate([path[::stride], np.array(ends)])
+
+
+def extent_of(trajectory: Trajectory, margin: float = MARGIN) -> tuple[float, float, float, float]:
+    """Return the rectangle x0, y0, x1, y1 (m) about the way, within the walls if there are any.
+
+    It is the whole arena when that is not much larger.
+    """
+    points = way(trajectory)
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = max(margin, 0.08 * float((high - low).max()))
+    low, high = low - margin, high + margin
+    arena = trajectory.scenario.arena
+    size = np.array(arena.size)
+    if (size <= 2.2 * max(high - low)).all():
+        low, high = np.minimum(low, 0.0), np.maximum(high, size)
+    if arena.walls:
+        low, high = np.maximum(low, 0.0), np.minimum(high, size)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def lens_for(trajectory: Trajectory, size: tuple[int, int]) -> Lens:
+    """Return the camera that shows all of the robot's way largest, looking north if it can."""
+    points = way(trajectory)
+    span = float((points.max(axis=0) - points.min(axis=0)).max())
+    margin = max(MARGIN, 0.06 * span)
+    angle = np.arange(8) * (math.tau / 8)
+    around = np.stack([np.cos(angle), np.sin(angle)], axis=1) * margin
+    flat = (points[:, None] + around).reshape(-1, 2)
+    if trajectory.scenario.arena.walls:  # nothing happens behind a wall
+        flat = np.clip(flat, -0.1, np.array(trajectory.scenario.arena.size) + 0.1)
+    low = np.column_stack([flat, np.zeros(len(flat))])
+    corners = np.concatenate([low, np.add(low, (0.0, 0.0, OBSTACLE_HEIGHT))])
+
+    best, best_score = None, -math.inf
+    for yaw in YAWS:
+        for pitch in PITCHES:
+            lens = _fitted(corners, yaw, pitch, size)
+            distance = math.dist(lens.eye, lens.target)
+            # Turning away from the map's direction costs orientation; it must be worth it.
+            score = (1.0 - 0.3 * abs(yaw) / (math.pi / 2)) / distance
+            if score > best_score * (1.0 + 1e-9):
+                best, best_score = lens, score
+    assert best is not None
+    return best
+
+
+def _fitted(points: Floats, yaw: float, pitch: float, size: tuple[int, int]) -> Lens:
+    """Return the nearest camera of a direction that has all points in its picture.
+
+    A point is within the picture if its offset from the eye, to each side, is at most its distance
+    times the tangent of half the picture's angle. That is linear in the eye's place in camera axes.
+    """
+    forward = np.array(
+        [-math.sin(yaw) * math.cos(pitch), math.cos(yaw) * math.cos(pitch), -math.sin(pitch)]
+    )
+    right = np.array([math.cos(yaw), math.sin(yaw), 0.0])
+    up = np.cross(right, forward)
+    width, height = size
+    tall = math.tan(FIELD_OF_VIEW / 2)
+    across = [(right, tall * width / height * (1 - 2 * _EDGE / width))]
+    across.append((up, tall * (1 - 2 * _EDGE / height)))
+
+    depth = points @ -forward
+    back, eye = 0.0, np.zeros(3)
+    for axis, tangent in across:
+        aside = points @ axis
+        most, least = (aside + tangent * depth).max(), (aside - tangent * depth).min()
+        eye += axis * (most + least) / 2
+        back = max(back, (most - least) / 2 / tangent)
+    eye -= forward * back
+    middle = back - float(depth.mean())
+    target = eye + forward * middle
+    near = max(0.05 * back, 0.8 * (back - float(depth.max())))
+    far = back - float(depth.min())
+    return Lens(
+        eye=(float(eye[0]), float(eye[1]), float(eye[2])),
+        target=(float(target[0]), float(target[1]), float(target[2])),
+        field_of_view=FIELD_OF_VIEW,
+        size=size,
+        near=float(near) * 0.5,
+        far=float(far) * 4.0,
+    )
