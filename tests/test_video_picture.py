@@ -1,0 +1,332 @@
+"""What a frame shows: every part in its place, hidden things hidden, texts in their boxes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from PIL import Image
+from synthetic import drive, modes, scenario
+
+from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
+from fuzzyq_bullet.trajectory import Collision
+from fuzzyq_bullet.video import frame, paint, style
+from fuzzyq_bullet.video.record import moments
+from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.sensing import sensed_at
+from fuzzyq_bullet.video.stage import Stage
+from fuzzyq_bullet.video.style import MAP, MEANING, RULES, SCENE, SENSES, STORY, Rect
+from fuzzyq_bullet.video.timeline import Timeline
+from fuzzyq_bullet.video.words import outcome_lines
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video.film import Patch
+
+
+def pixels(image: Image.Image, rect: Rect) -> np.ndarray[Any, np.dtype[np.int64]]:
+    part = image.crop((rect.x, rect.y, rect.right, rect.bottom))
+    return np.asarray(part).astype(np.int64)
+
+
+def count(image: np.ndarray[Any, Any], colour: style.Colour, tolerance: int = 12) -> int:
+    return int((np.abs(image - colour).max(axis=-1) <= tolerance).sum())
+
+
+@pytest.fixture(scope="module")
+def run() -> Trajectory:
+    return drive()
+
+
+@pytest.fixture(scope="module")
+def middle(run: Trajectory) -> Image.Image:
+    return frame(run, 5.5)
+
+
+def test_the_scene_shows_robot_lines_and_goal(middle: Image.Image) -> None:
+    scene = pixels(middle, SCENE)
+    assert count(scene, style.GOAL, 30) > 100
+    assert count(scene, style.ROBOT, 40) > 300
+    for colour in style.LINES[1:]:  # the left one is short at this moment
+        assert count(scene, colour, 60) > 50
+
+
+def test_the_map_shows_path_goal_and_three_lines_at_their_length(run: Trajectory) -> None:
+    area = pixels(frame(run, 7.0), MAP)
+    scale = 34.4  # pixels a metre: 10 m on 344 pixels
+    assert count(area, style.GOAL, 30) > 30
+    assert count(area, style.PATH, 20) > 3 * scale
+    sensed = sensed_at(run, Timeline(run).at(7.0).decision)
+    assert sensed is not None
+    for colour, (_, length) in zip(style.LINES, sensed.lines, strict=True):
+        # A line 3.6 pixels wide, about two of which are of its pure colour.
+        assert count(area, colour, 40) == pytest.approx(length * scale * 3, rel=0.45)
+
+
+def test_the_rule_that_fires_most_is_the_brightest(run: Trajectory) -> None:
+    time = 5.0
+    index = Timeline(run).at(time).decision
+    fired = run.decisions.rules[index]
+    image = pixels(frame(run, time), RULES)
+    left, top, wide, high = 86, 48, 36, 32
+    light = np.array(
+        [
+            [image[top + r * high + 4, left + (4 - c) * wide + 4].sum() for c in range(5)]
+            for r in range(5)
+        ]
+    )
+    assert np.unravel_index(light.argmax(), light.shape) == np.unravel_index(
+        fired.argmax(), fired.shape
+    )
+    # And the whole table is in order, as far as its steps of brightness tell.
+    order = np.argsort(fired.ravel())
+    assert (np.diff(light.ravel()[order]) >= -6).all()
+
+
+def test_an_obstacle_in_front_hides_the_robot() -> None:
+    world = scenario(0, 0, start=(2.0, 4.0), goal=(8.0, 4.0))
+    free = drive(world, seconds=0.0)
+    scene = Scene(free)
+    toward = np.subtract(scene.lens.eye[:2], (2.0, 4.0))
+    at = np.array((2.0, 4.0)) + toward / np.linalg.norm(toward) * 0.27
+    scene.close()
+    wall = Box(shape="box", position=(float(at[0]), float(at[1])), size=(0.9, 0.1))
+    # The same record with the box put in front of the robot: same camera, same pose.
+    hidden = replace(free, scenario=world.model_copy(update={"obstacles": (wall,)}))
+    before, after = (pixels(frame(one, 0.0), SCENE) for one in (free, hidden))
+    assert count(before, style.ROBOT, 40) > 200
+    # From above, a box of 0.4 m leaves the far part of the robot's lid in sight.
+    assert 0 < count(after, style.ROBOT, 40) < 0.75 * count(before, style.ROBOT, 40)
+    behind = wall.model_copy(update={"position": (float(4 - at[0]), float(8 - at[1]))})
+    shown = replace(free, scenario=world.model_copy(update={"obstacles": (behind,)}))
+    assert count(pixels(frame(shown, 0.0), SCENE), style.ROBOT, 40) == pytest.approx(
+        count(before, style.ROBOT, 40), rel=0.05
+    )
+
+
+def test_a_robot_out_of_the_picture_is_left_out(run: Trajectory) -> None:
+    scene = Scene(run)
+    moment = replace(Timeline(run).at(0.0), position=(500.0, 500.0))
+    scene.draw(moment, None)
+    moment = replace(moment, position=(*np.add(scene.lens.eye[:2], (0.0, -50.0)),))
+    scene.draw(moment, None)
+    scene.close()
+
+
+def assembled(run: Trajectory, until: float) -> Image.Image:
+    image = Image.new("RGB", (style.WIDTH, style.HEIGHT), style.PAGE)
+    timeline = Timeline(run)
+    with Stage(run) as stage:
+        for moment in moments(timeline, 1.0):
+            if moment.time > until + 1e-6:
+                break
+            for patch in stage.patches(moment):
+                image.paste(patch.image, (patch.x, patch.y))
+    return image
+
+
+def test_redrawing_only_what_changed_gives_the_same_frame(run: Trajectory) -> None:
+    until = 6.0
+    step_by_step, at_once = assembled(run, until), frame(run, until)
+    a, b = (np.asarray(image).astype(int) for image in (step_by_step, at_once))
+    differs = np.abs(a - b).max(axis=-1) > 60
+    differs[STORY.y : STORY.bottom] = False  # its sentences stay a while; they have a past
+    # Shifts of less than half a pixel are left out, which shows on edges. Something not wiped
+    # away, or forgotten, would be hundreds of pixels.
+    assert differs.sum() <= 120, differs.sum()
+
+
+KINDS = (
+    "goal",
+    "collision",
+    "wall",
+    "stuck",
+    "breakout",
+    "following",
+    "blank",
+    "one tick",
+    "no obstacles",
+    "a thousand",
+    "huge",
+    "tiny",
+    "long",
+    "no walls",
+)
+
+
+def everything() -> dict[str, Trajectory]:
+    plain = drive(scenario(12, 2), seconds=4.0, outcome="timeout")
+    hit = Collision(4.0, (2.0, 4.2), 3, 12.0)
+    return {
+        "goal": drive(scenario(6, 1, start=(7.0, 5.0)), seconds=30.0),
+        "collision": replace(plain, outcome="collision", collision=hit),
+        "wall": replace(plain, outcome="collision", collision=replace(hit, obstacle=-1)),
+        "stuck": replace(plain, outcome="stuck"),
+        "breakout": modes(plain, (0, 0.2), (1, 0.8)),
+        "following": modes(plain, (2, 1.0)),
+        "blank": drive(scenario(12, 2), seconds=2.0, explained=False),
+        "one tick": drive(seconds=0.0),
+        "no obstacles": drive(scenario(0, 0), seconds=2.0),
+        "a thousand": drive(
+            scenario(1000, 10, size=(40.0, 40.0), start=(2.0, 2.0), goal=(38.0, 38.0)), seconds=2.0
+        ),
+        "huge": drive(
+            scenario(10, 2, size=(1000.0, 1000.0), start=(5.0, 5.0), goal=(900.0, 800.0)),
+            seconds=2.0,
+        ),
+        "tiny": drive(
+            scenario(0, 0, size=(1.2, 1.2), start=(0.4, 0.4), goal=(0.8, 0.8)), seconds=2.0
+        ),
+        "long": drive(scenario(20, 2, size=(40.0, 4.0), start=(1, 2), goal=(39, 2)), seconds=2.0),
+        "no walls": drive(
+            scenario(5, 0).model_copy(
+                update={
+                    "arena": Arena(walls=False),
+                    "name": "a" * 100,
+                    "seed": 2**63 - 1,
+                    "drive": "kinematic",
+                    "obstacles": (
+                        Cylinder(shape="cylinder", position=(-900.0, 5.0), radius=900.5),
+                        Box(shape="box", position=(5.0, -500.0), size=(900.0, 1000.0), yaw=0.001),
+                    ),
+                }
+            ),
+            seconds=2.0,
+        ),
+    }
+
+
+@pytest.fixture(scope="module")
+def all_runs() -> dict[str, Trajectory]:
+    runs = everything()
+    assert tuple(runs) == KINDS
+    return runs
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_every_kind_of_run_is_drawn_with_all_text_in_its_box(
+    all_runs: dict[str, Trajectory], name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[tuple[Image.Image, tuple[float, ...], str]] = []
+    real = paint.write
+
+    def write(
+        image: Image.Image,
+        at: tuple[float, float],
+        text: str,
+        colour: style.Colour,
+        size: int,
+        *,
+        bold: bool = False,
+        align: str = "l",
+    ) -> None:
+        width = style.text_width(text, size, bold)
+        left = at[0] - {"l": 0.0, "m": width / 2, "r": width}[align]
+        box = (left, at[1] - 0.74 * size, left + width, at[1])
+        assert min(box[0], box[1] + 1) >= 0, text
+        assert max(box[2] - image.width, box[3] - image.height) <= 0, text
+        for other, theirs, said in written:
+            if other is image:
+                apart = (
+                    theirs[2] <= box[0] + 1
+                    or box[2] <= theirs[0] + 1
+                    or theirs[3] <= box[1] + 1
+                    or box[3] <= theirs[1] + 1
+                )
+                assert apart, f"{text!r} over {said!r}"
+        written.append((image, box, text))
+        real(image, at, text, colour, size, bold=bold, align=align)
+
+    monkeypatch.setattr(paint, "write", write)
+    run = all_runs[name]
+    patches: list[Patch] = []
+    with Stage(run) as stage:
+        for number, moment in enumerate(moments(Timeline(run), 1.0)):
+            if number % 15 == 0 or moment.over:
+                written.clear()
+                patches += stage.patches(moment)
+    assert {(SCENE.x, SCENE.y), (MAP.x, MAP.y), (MEANING.x, MEANING.y)} <= {
+        (patch.x, patch.y) for patch in patches
+    }
+    for x, y, image in patches:
+        assert x % 2 == y % 2 == image.width % 2 == image.height % 2 == 0
+        assert min(x, y) >= 0
+        assert x + image.width <= style.WIDTH
+        assert y + image.height <= style.HEIGHT
+
+
+def test_the_robot_can_be_seen_in_any_arena(all_runs: dict[str, Trajectory]) -> None:
+    for name in ("a thousand", "huge", "tiny", "long"):
+        picture = frame(all_runs[name], 1.0)
+        for rect in (SCENE, MAP):
+            assert count(pixels(picture, rect), style.ROBOT, 30) > 12, (name, rect)
+
+
+def test_the_target_is_marked_where_there_is_one(all_runs: dict[str, Trajectory]) -> None:
+    shown, plain = (
+        count(pixels(frame(all_runs[name], 2.0), MAP), style.TARGET, 40)
+        for name in ("following", "blank")
+    )
+    assert shown > 15
+    assert plain == 0
+
+
+def test_a_collision_is_marked_on_the_map_and_in_the_scene(
+    all_runs: dict[str, Trajectory],
+) -> None:
+    for rect in (MAP, SCENE):
+        counts = [
+            count(pixels(frame(all_runs["collision"], time), rect), style.DANGER, 10)
+            for time in (3.9, 99.0)
+        ]
+        assert counts[1] > counts[0] + 40
+
+
+def test_the_outcome_says_what_happened(all_runs: dict[str, Trajectory]) -> None:
+    title, figures = outcome_lines(all_runs["goal"])
+    assert title == "GOAL reached"
+    assert "path" in figures
+    assert "least clearance" in figures
+    assert outcome_lines(all_runs["collision"])[0] == "COLLISION with obstacle 3"
+    assert outcome_lines(all_runs["wall"])[0] == "COLLISION with a wall"
+    assert "at 4.0 s" in outcome_lines(all_runs["wall"])[1]
+    assert outcome_lines(all_runs["stuck"])[0].startswith("STUCK")
+
+
+def test_the_close_up_has_left_on_the_left(run: Trajectory) -> None:
+    picture = frame(run, 7.0)
+    close_up = pixels(picture, Rect(SENSES.x + 8, SENSES.y + 28, 174, 174))
+    columns = [
+        np.nonzero(np.abs(close_up - colour).max(axis=-1) <= 12)[1].mean() for colour in style.LINES
+    ]
+    assert columns[0] < columns[1] < columns[2]
+
+
+# Machado, Oliveira and Fernandes 2009, severity 1.0.
+_BLINDNESS = {
+    "protan": [(0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216),
+               (-0.003882, -0.048116, 1.051998)],
+    "deutan": [(0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413),
+               (-0.011820, 0.042940, 0.968881)],
+    "tritan": [(1.255528, -0.076749, -0.178779), (-0.078411, 0.930809, 0.147602),
+               (0.004733, 0.691367, 0.303900)],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", list(_BLINDNESS))
+def test_the_colour_blind_can_tell_the_lines_apart(kind: str) -> None:
+    def seen(colour: style.Colour) -> np.ndarray[Any, Any]:
+        linear = (np.array(colour) / 255) ** 2.2
+        x, y, z = np.array(
+            [(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)]
+        ) @ np.clip(np.array(_BLINDNESS[kind]) @ linear, 0, 1)
+        fx, fy, fz = np.cbrt((x / 0.9505, y, z / 1.089))
+        return np.array((116 * fy - 16, 500 * (fx - fy), 200 * (fy - fz)))
+
+    for a, b in combinations(style.LINES, 2):
+        # CIE76: 2 is just noticeable, 20 is obvious side by side.
+        assert math.dist(seen(a), seen(b)) > 25
