@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import secrets
+import shutil
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from fuzzyq_bullet.errors import UserError
@@ -19,8 +20,11 @@ def written_beside(path: Path) -> Iterator[Path]:
     Raises:
         UserError: If the file cannot be written (permissions, a full disk, a folder in its place).
     """
-    part = _part(path)
+    # A folder of its own: a program that is late to open its file, when all is over, then fails.
+    folder = _part(path)
+    part = folder / path.name
     try:
+        folder.mkdir()
         yield part
         part.replace(path)
     except OSError as error:
@@ -29,8 +33,7 @@ def written_beside(path: Path) -> Iterator[Path]:
         told = (problem.replace(str(part), str(path)) for problem in error.problems)
         raise UserError(*told) from error
     finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
+        _remove(folder)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -79,3 +82,10 @@ def writable_files(folder: Path, names: Sequence[str]) -> list[Path]:
 def _part(path: Path) -> Path:
     # By chance, not by process id: containers that share a folder may share that too.
     return path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+
+
+def _remove(folder: Path) -> None:
+    for _ in range(3):  # something may still have been written while the first was at work
+        shutil.rmtree(folder, ignore_errors=True)
+        if not folder.exists():
+            return

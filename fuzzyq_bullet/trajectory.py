@@ -6,6 +6,7 @@ Video, metrics, checks and reports are made from this record alone; nothing is m
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -35,7 +36,7 @@ _FAR = 1e7
 class Ticks:
     """The robot's state at every tick of the drive, first the start and last the end.
 
-    ``T`` ticks; 20 a second with wheels, one for each step (Eq. 17) in the kinematic drive.
+    ``T`` ticks; 15 a second with wheels, one for each step (Eq. 17) in the kinematic drive.
 
     Attributes:
         time: Simulated time (s), shape (T,), increasing.
@@ -168,8 +169,11 @@ class Trajectory:
             "scenario": self.scenario.model_dump(mode="json"),
         }
         arrays: dict[str, Any] = {"meta": np.array(json.dumps(meta)), **self._arrays()}
-        with written_beside(path) as part, part.open("wb") as stream:
-            np.savez_compressed(stream, **arrays)
+        # Made in memory first: on a full disk an archive is left open, and complains on its own.
+        archive = io.BytesIO()
+        np.savez_compressed(archive, **arrays)
+        with written_beside(path) as part:
+            part.write_bytes(archive.getbuffer())
 
     @classmethod
     def load(cls, path: Path) -> Trajectory:

@@ -14,13 +14,13 @@ from fuzzyq_bullet.planning.base import Decision, Motion, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
 
-COMMAND_STEPS = 3
-"""Physics steps between two wheel commands: 80 a second, so that the ramp of the acceleration
+COMMAND_STEPS = 2
+"""Physics steps between two wheel commands: 120 a second, so that the ramp of the acceleration
 limit never asks the tyres for a jump they cannot hold."""
-TICK_STEPS = 12
-"""Physics steps between two ticks: 20 a second."""
+TICK_STEPS = 16
+"""Physics steps between two ticks: 15 a second."""
 DECISION_TICKS = 3
-"""Ticks between two decisions: 6.7 a second."""
+"""Ticks between two decisions: 5 a second."""
 
 RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05

@@ -105,7 +105,8 @@ def _free_of_one_another(drawn: Floats, places: Floats, wanted: Random) -> Float
     for first, second in sorted(map(tuple, pairs.tolist())):
         if keep[first]:
             keep[second] = False
-    return drawn[keep]
+    kept: Floats = drawn[keep]
+    return kept
 
 
 def _too_dense(wanted: Random, size: tuple[float, float]) -> bool:

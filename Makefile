@@ -1,0 +1,94 @@
+# Everything is installed into .venv; nothing outside this folder is touched.
+# Needed beforehand: make, and CPython 3.10 or 3.11.
+
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+OUT ?= out
+ARGS ?=
+
+ifdef PYTHON
+CANDIDATES := "$(PYTHON)"
+# A Python that is asked for by name is used, even where .venv is ready with another.
+VERSION := -c 'import sys; print(sys.version_info[:2])'
+ifneq ($(shell { "$(PYTHON)" $(VERSION); } 2>&1),$(shell { $(BIN)/python $(VERSION); } 2>&1))
+.PHONY: $(READY)
+endif
+else
+CANDIDATES := python3.11 python3.10 python3 python
+endif
+
+SUITABLE := import sys; sys.exit(sys.implementation.name != "cpython" \
+	or not (3, 10) <= sys.version_info[:2] <= (3, 11))
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint format lock clean
+
+help:
+	@echo 'make demo    drive a scenario and film it: $(OUT)/mixed.mp4'
+	@echo 'make test    run the tests (some of them: make test ARGS="-k video")'
+	@echo 'make lint    check style and types'
+	@echo 'make format  put the style right where that can be done without thought'
+	@echo 'make setup   only install; all of the above do so first where it is needed'
+	@echo 'make lock    resolve the dependencies anew into requirements.lock'
+	@echo 'make clean   remove .venv and what tools left behind; videos in $(OUT) stay'
+	@echo 'All take PYTHON=/path/to/python3.11, which may also be a 3.10.'
+
+setup: $(READY)
+
+demo: $(READY)
+	@$(BIN)/fuzzyq run mixed --out "$(OUT)"
+
+test: $(READY)
+	@$(BIN)/python -m pytest -n auto --maxprocesses 4 $(ARGS)
+
+lint: $(READY)
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+
+format: $(READY)
+	@$(BIN)/ruff check --fix-only .
+	@$(BIN)/ruff format .
+
+# Versions and hashes alone: where packages come from is for whoever installs them to say.
+lock: $(READY)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check 'uv>=0.8'
+	@$(BIN)/uv pip compile pyproject.toml --extra test --extra lint --output-file requirements.lock \
+		--universal --python-version 3.10 --generate-hashes --upgrade --quiet \
+		--no-emit-index-url --no-emit-find-links --no-annotate --no-header
+	@! grep -nE '://|^ *-(-index|-extra-index|-find-links|i|f)' requirements.lock
+
+clean:
+	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(READY): pyproject.toml requirements.lock
+	@python=; \
+	for candidate in $(CANDIDATES); do \
+		if { "$$candidate" -c '$(SUITABLE)'; } 2>/dev/null; then python=$$candidate; break; fi; \
+	done; \
+	if [ -z "$$python" ]; then \
+		echo 'fuzzyq_bullet needs CPython 3.10 or 3.11: PyBullet has ready-made wheels for no later one.' >&2; \
+		echo 'Looked at:' >&2; \
+		for candidate in $(CANDIDATES); do \
+			found=$$("$$candidate" --version 2>/dev/null | head -n 1) 2>/dev/null; \
+			echo "  $$candidate: $${found:-not there}" >&2; \
+		done; \
+		echo 'Point to one like this: make $(or $(MAKECMDGOALS),setup) PYTHON=/path/to/python3.11' >&2; \
+		exit 1; \
+	fi; \
+	same='import sys; print(sys.version_info[:3])'; \
+	if [ "$$({ $(BIN)/python -m pip --version >/dev/null && $(BIN)/python -c "$$same"; } 2>/dev/null)" \
+		!= "$$("$$python" -c "$$same")" ]; then \
+		echo "Setting up $(VENV) with $$("$$python" --version); this takes a minute or two ..."; \
+		rm -rf $(VENV); \
+		"$$python" -m venv $(VENV) || { rm -rf $(VENV); exit 1; }; \
+	else \
+		echo "Bringing $(VENV) up to date ..."; \
+	fi
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
+		--require-hashes --requirement requirements.lock
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
+		--no-deps --no-build-isolation --editable .
+	@touch $@

@@ -1,0 +1,66 @@
+"""All commands of ``fuzzyq`` in one place, and what every mistake of a user becomes."""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from fuzzyq_bullet.cli import bench, explain, figure, replay, run, scenarios
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.version import __version__
+
+app = typer.Typer(
+    name="fuzzyq",
+    help="A robot finds its way among obstacles it has never seen, and shows why it turned.",
+    epilog="Exit codes: 0 all well; 1 it ran and the verdict is bad; 2 the input is wrong; "
+    "130 interrupted (143 by SIGTERM).",
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command("run")(run.run)
+app.command("replay")(replay.replay)
+app.command("validate")(scenarios.validate)
+app.command("schema")(scenarios.schema)
+app.command("list")(scenarios.list_scenarios)
+app.command("explain", context_settings=explain.CONTEXT_SETTINGS)(explain.explain)
+app.command("figure")(figure.figure)
+app.add_typer(bench.app, name="bench")
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _global_options(
+    version: bool = typer.Option(
+        False, "--version", callback=_show_version, is_eager=True, help="Print the version."
+    ),
+) -> None:
+    pass
+
+
+def call() -> int:
+    """Do what ``sys.argv`` asks for and return the exit code.
+
+    Raises:
+        UserError: If what was asked for is wrong.
+    """
+    try:
+        status = app(sys.argv[1:], prog_name="fuzzyq", standalone_mode=False)
+    except typer.TyperException as error:  # an unknown option, a missing argument, ...
+        message = " ".join(error.format_message().split())
+        if not message:  # a command that only has others below it has shown its help
+            return 0
+        context = getattr(error, "ctx", None)
+        help_at = context.command_path if context is not None else "fuzzyq"
+        raise UserError(f"{message.rstrip('.')} (see {help_at} --help)") from error
+    except OSError as error:  # a temporary folder that is full, a file that went away, ...
+        what = f"{error.filename}: " if error.filename else ""
+        raise UserError(f"{what}{error.strerror or error}") from error
+    return status if isinstance(status, int) else 0

@@ -1,0 +1,45 @@
+"""``fuzzyq bench``: measurements; every figure is a ratio taken within one run."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(help="Measure the project itself.", no_args_is_help=True)
+
+
+@app.callback()
+def _bench() -> None:
+    pass
+
+
+@app.command("speed")
+def speed(
+    *,
+    rounds: Annotated[int, typer.Option(min=1, max=100, help="Interleaved rounds.")] = 7,
+    json: Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")] = False,
+) -> None:
+    """Compare the cost of the loop, the video and the controller with what bounds them.
+
+    Exit code 1 when a target is missed.
+    """
+    from fuzzyq_bullet.cli.console import progress_bar, say
+    from fuzzyq_bullet.experiments.speed import MEASUREMENTS, as_json, as_table, measure
+
+    rows = []
+    with progress_bar("measuring", len(MEASUREMENTS)) as (progress, bar):
+        for measurement in MEASUREMENTS:
+            progress.update(bar, note=measurement.name)
+            rows += measure(measurement, rounds)
+            progress.advance(bar)
+    if json:
+        typer.echo(as_json(rows))
+    else:
+        from rich.console import Console
+
+        Console(highlight=False).print(as_table(rows))
+    missed = [row for row in rows if not row.met]
+    if missed:
+        say("targets missed: " + "; ".join(row.what for row in missed), style="bold")
+        raise typer.Exit(1)

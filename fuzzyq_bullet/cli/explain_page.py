@@ -1,0 +1,214 @@
+"""What ``fuzzyq explain`` says: one inference as data for programs and as a page for people."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.fuzzy import FuzzyController, Inference, RuleTable
+    from fuzzyq_bullet.fuzzy.rules import Rule
+    from fuzzyq_bullet.fuzzy.sets import Floats, Variable
+
+FIRES = 0.01
+"""Gaussians never reach 0, so every rule fires a little; below this a rule does not count."""
+
+
+def as_dict(
+    controller: FuzzyController,
+    rules: RuleTable,
+    distance: float,
+    difference: float,
+    inference: Inference,
+) -> dict[str, Any]:
+    """Return all that happened in an inference, the rules strongest first."""
+    base = controller.base
+    return {
+        "distance": distance,
+        "difference": difference,
+        "table": rules,
+        "samples": controller.samples,
+        "near": dict(zip(base.row.labels, inference.near.tolist(), strict=True)),
+        "side": dict(zip(base.column.labels, inference.side.tolist(), strict=True)),
+        "rules": [
+            {
+                base.row.name: rule.row,
+                base.column.name: rule.column,
+                **dict(zip((output.name for output in base.outputs), rule.then, strict=True)),
+                "strength": strength,
+            }
+            for strength, rule in _firing(controller, inference.rules)
+        ],
+        "turn": inference.turn,
+        "stride": inference.stride,
+    }
+
+
+def as_page(
+    controller: FuzzyController,
+    rules: RuleTable,
+    distance: float,
+    difference: float,
+    inference: Inference,
+    width: int,
+) -> RenderableType:
+    """Return the inference as a page of ``width`` columns, legible without colour."""
+    base = controller.base
+    near = _memberships(f"d = {distance:g} S_p free ahead", base.row, inference.near)
+    side = _memberships(
+        f"Df = {difference:g} S_p: {_roomier(difference)}", base.column, inference.side
+    )
+    inputs = Table.grid(padding=(0, 5))
+    inputs.add_row(near, side)
+    return Group(
+        _title("Inputs, and how far they belong to each set (Table 2)"),
+        inputs,
+        Text(),
+        _title(f"Rules (Table 4, {rules}): [turn step] and strength, ◀ the strongest"),
+        _rule_table(controller, inference),
+        _title("Rules that fire, strongest first"),
+        _sentences(controller, inference, width),
+        Text(),
+        _title(f"Outputs (centroid of {controller.samples} points, Eq. 22)"),
+        _outputs(base.outputs, inference),
+    )
+
+
+def _firing(controller: FuzzyController, strengths: Floats) -> list[tuple[float, Rule]]:
+    """Pair the rules with their strengths, strongest first, ties in the order of the table."""
+    pairs = zip(strengths.ravel().tolist(), controller.base, strict=True)
+    return sorted(pairs, key=lambda pair: -pair[0])
+
+
+def _title(words: str) -> Text:
+    return Text(words, style="bold underline")
+
+
+def _roomier(difference: float) -> str:
+    if difference == 0:
+        return "as much room left as right"
+    return "more room on the " + ("left" if difference > 0 else "right")
+
+
+def _memberships(title: str, variable: Variable, degrees: Floats) -> Table:
+    grid = Table.grid(padding=(0, 1))
+    for one, degree in zip(variable.sets, degrees.tolist(), strict=True):
+        style = "cyan" if degree >= FIRES else "dim"
+        grid.add_row(
+            Text(one.label, style="bold" if degree >= FIRES else "dim"),
+            Text(one.words, style="" if degree >= FIRES else "dim"),
+            _bar(degree, 12, style),
+            Text(f"{degree:.2f}", style="" if degree >= FIRES else "dim"),
+        )
+    framed = Table.grid()
+    framed.add_row(Text(title))
+    framed.add_row(grid)
+    return framed
+
+
+def _bar(share: float, width: int, style: str) -> Text:
+    """Draw ``share`` (0 to 1) as a bar in eighths of a character on a dotted track."""
+    eighths = round(share * width * 8)
+    full, rest = divmod(eighths, 8)
+    bar = "█" * full + (" ▏▎▍▌▋▊▉"[rest] if rest else "")
+    return Text.assemble((bar, style), ("·" * (width - len(bar)), "dim"))
+
+
+def _rule_table(controller: FuzzyController, inference: Inference) -> Table:
+    base = controller.base
+    strongest = float(inference.rules.max())
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1))
+    table.add_column("d \\ Df", style="bold")
+    for label in base.column.labels:
+        table.add_column(label, no_wrap=True)
+    for label, cells, strengths in zip(
+        base.row.labels, base.cells, inference.rules.tolist(), strict=True
+    ):
+        table.add_row(
+            label,
+            *(
+                _cell(cell, strength, strongest)
+                for cell, strength in zip(cells, strengths, strict=True)
+            ),
+        )
+    return table
+
+
+def _cell(labels: tuple[str, ...], strength: float, strongest: float) -> Text:
+    """Write one rule so that weak, firing and strongest differ in shape, not only in colour."""
+    names = " ".join(labels)
+    if strength < FIRES:
+        return Text(f"{names:<5}   ·  ", style="dim")
+    if strength == strongest:
+        return Text(f"{names:<5} {strength:.2f}◀", style="bold reverse cyan")
+    return Text.assemble(f"{names:<5} ", (f"{strength:.2f} ", "bold cyan"))
+
+
+def _sentences(controller: FuzzyController, inference: Inference, width: int) -> Table:
+    firing = [pair for pair in _firing(controller, inference.rules) if pair[0] >= FIRES]
+    halves = [_sentence(controller, inference, rule) for _, rule in firing]
+    # A line that must be broken is broken before its "then", and then all are.
+    room = width - len("0.00 ")
+    joint = " " if all(len(" ".join(pair)) <= room for pair in halves) else "\n   "
+    grid = Table.grid(padding=(0, 1))
+    for (strength, _), pair in zip(firing, halves, strict=True):
+        grid.add_row(Text(f"{strength:.2f}", style="bold cyan"), joint.join(pair))
+    silent = inference.rules.size - len(firing)
+    grid.add_row("", Text(f"The other {silent} rules stay below {FIRES}.", style="dim"))
+    return grid
+
+
+def _sentence(controller: FuzzyController, inference: Inference, rule: Rule) -> tuple[str, str]:
+    """Return the rule in words, in two halves, with the memberships whose product it fires at."""
+    base = controller.base
+    near = inference.near[base.row.labels.index(rule.row)]
+    side = inference.side[base.column.labels.index(rule.column)]
+    then = ", ".join(
+        f"{output.name} {output.words(label)}"
+        for output, label in zip(base.outputs, rule.then, strict=True)
+    )
+    return (
+        f"if {base.row.name} is {base.row.words(rule.row)} ({near:.2f}) "
+        f"and {base.column.name} is {base.column.words(rule.column)} ({side:.2f})",
+        f"then {then}",
+    )
+
+
+def _outputs(variables: tuple[Variable, ...], inference: Inference) -> Table:
+    turn, step = variables
+    # Rounded first, so that a turn shown as 0.00 is not said to go anywhere.
+    scale = round(inference.turn, 2)
+    way = "left" if scale > 0 else "right"
+    grid = Table.grid(padding=(0, 2))
+    grid.add_row(
+        Text(f"N_a = {scale:+.2f}" if scale else "N_a =  0.00", style="bold"),
+        # Left is positive, and drawn on the left.
+        _gauge(-scale, (-turn.domain[1], -turn.domain[0]), ("left", "right")),
+        f"turn to the {way} by {abs(scale):.2f}·ω2·A_p" if scale else "no turn",
+    )
+    grid.add_row(
+        Text(f"N_s =  {inference.stride:.2f}", style="bold"),
+        _gauge(inference.stride, step.domain, ("short", "long")),
+        f"a step of {inference.stride:.2f}·ω1·S_p",
+    )
+    return grid
+
+
+def _gauge(value: float, domain: tuple[float, float], ends: tuple[str, str]) -> Text:
+    """Draw ``value`` as a mark on a ruler, with what its two ends mean."""
+    low, high = domain
+    width = 19
+    ruler = ["─"] * width
+    ruler[width // 2] = "┼"
+    mark = round((value - low) / (high - low) * (width - 1))
+    return Text.assemble(
+        (f"{ends[0]:>5} ├", "dim"),
+        ("".join(ruler[:mark]), "dim"),
+        ("●", "bold cyan"),
+        ("".join(ruler[mark + 1 :]), "dim"),
+        (f"┤ {ends[1]:<5}", "dim"),
+    )

@@ -1,0 +1,29 @@
+"""``fuzzyq figure``: draw one of the paper's figures again, from this project's own code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.experiments.figures import FIGURES, drawing
+
+
+def figure(
+    number: Annotated[
+        int, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper.")
+    ],
+    out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("out"),
+) -> None:
+    """Draw a figure of the paper and print the files written.
+
+    Raises:
+        UserError: If no figure has this number, or the folder cannot be written to.
+    """
+    if number not in FIGURES:
+        known = "; ".join(f"{key} ({entry.shows})" for key, entry in sorted(FIGURES.items()))
+        raise UserError(f"NUMBER: no figure {number}; there are: {known}")
+    for path in drawing(number)(out):
+        typer.echo(path)

@@ -1,0 +1,142 @@
+"""The process around a command: its signals, its standard streams, its exit code.
+
+Imports the standard library only, so that it is in place before anything slow is loaded.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import sys
+import time
+from typing import TYPE_CHECKING, NoReturn
+
+from fuzzyq_bullet.errors import UserError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+BAD_INPUT = 2
+_GRACE = 2.0
+"""Time (s) in which nothing interrupts the tidying up after an interrupt."""
+
+
+class Stopped(BaseException):
+    """A signal asked the process to end: Ctrl-C, ``kill``, or its terminal went away.
+
+    No ``KeyboardInterrupt``, of which libraries make what they like.
+
+    Attributes:
+        status: The exit code that shells use for it: 130 for Ctrl-C, 143 for SIGTERM.
+    """
+
+    def __init__(self, signum: int) -> None:
+        super().__init__(signum)
+        self.status = 128 + signum
+
+
+def guard(command: Callable[[], int]) -> NoReturn:
+    """Run a command and exit with what it returns, whatever happens to the process meanwhile.
+
+    A signal ends it in good order: everything half-written is removed, nobody sees a traceback.
+    Its output may end in a pipe that closes early, which changes nothing about the verdict.
+    """
+    try:
+        _catch_signals()
+        _set_up_streams()
+        status = _status_of(command)
+        _ignore_signals()
+    except Stopped as stopped:
+        _ignore_signals()
+        say_error("interrupted")
+        status = stopped.status
+    sys.exit(status)
+
+
+def _status_of(command: Callable[[], int]) -> int:
+    try:
+        status = command()
+        sys.stdout.flush()
+    except UserError as error:
+        for problem in error.problems:
+            say_error(problem)
+        return BAD_INPUT
+    return status
+
+
+def say_error(problem: str) -> None:
+    """Print one line about something that went wrong."""
+    # A file's name may hold anything, a line feed or a terminal's command among them.
+    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in problem)
+    line = f"error: {shown}"
+    if sys.stderr.isatty() and not os.environ.get("NO_COLOR"):
+        line = f"\x1b[1;31m{line}\x1b[0m"
+    print(line, file=sys.stderr, flush=True)
+
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def _catch_signals() -> None:
+    first: float | None = None
+
+    def stop(signum: int, frame: FrameType | None) -> None:
+        nonlocal first
+        now = time.monotonic()
+        if first is None or now - first > _GRACE:
+            first = now
+            raise Stopped(signum)
+
+    for signum in _SIGNALS:
+        # What is ignored from the start stays so: nohup, or a shell's job in the background.
+        if signal.getsignal(signum) is not signal.SIG_IGN:
+            signal.signal(signum, stop)
+
+
+def _ignore_signals() -> None:
+    for signum in _SIGNALS:  # what is left to do takes no time
+        signal.signal(signum, signal.SIG_IGN)
+
+
+class _Outlet(io.TextIOWrapper):
+    """Standard output or error that outlives its reader, as in ``fuzzyq list | head -1``."""
+
+    def __init__(self, descriptor: int, name: str, *, must: bool) -> None:
+        # Whatever the locale, a sign that cannot be shown is no reason to fail.
+        encoding = getattr(getattr(sys, name), "encoding", None) or "utf-8"
+        binary = os.fdopen(descriptor, "wb", closefd=False)
+        super().__init__(binary, encoding, "backslashreplace", line_buffering=not must)
+        self._what, self._must = name, must
+
+    def write(self, text: str, /) -> int:
+        try:
+            return super().write(text)
+        except OSError as error:
+            self._give_up(error)
+            return len(text)
+
+    def flush(self) -> None:
+        try:
+            super().flush()
+        except OSError as error:
+            self._give_up(error)
+
+    def _give_up(self, error: OSError) -> None:
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, self.fileno())
+        os.close(null)
+        if self._must and not isinstance(error, BrokenPipeError):
+            raise UserError(f"{self._what}: cannot be written: {error.strerror}") from error
+
+
+def _set_up_streams() -> None:
+    # One that is closed would become that of the next file opened.
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass
+    os.close(descriptor)
+    # What libraries print from C must not get between the lines of a result on stdout.
+    sys.stdout = _Outlet(os.dup(1), "stdout", must=True)
+    os.dup2(2, 1)
+    sys.stderr = _Outlet(2, "stderr", must=False)

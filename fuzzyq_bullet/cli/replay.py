@@ -1,0 +1,36 @@
+"""``fuzzyq replay``: the video of a record, made again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fuzzyq_bullet.cli.film import SpeedOption, film
+
+
+def replay(
+    trajectory: Annotated[
+        Path, typer.Argument(metavar="TRAJECTORY", help="A record (.npz) written by a run.")
+    ],
+    *,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder to write into; by default that of the record.")
+    ] = None,
+    speed: SpeedOption = 1.0,
+) -> None:
+    """Make the video NAME.mp4 from a record, without running anything again.
+
+    Raises:
+        UserError: If the record cannot be read, or the video cannot be written.
+    """
+    from fuzzyq_bullet.errors import UserError
+    from fuzzyq_bullet.files import writable_files
+    from fuzzyq_bullet.trajectory import Trajectory
+
+    record = Trajectory.load(trajectory)
+    (video,) = writable_files(out or trajectory.parent, [f"{trajectory.stem}.mp4"])
+    if video == trajectory:
+        raise UserError(f"{trajectory}: its own video would replace it; call it NAME.npz")
+    typer.echo(film(record, video, speed))

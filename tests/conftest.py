@@ -1,0 +1,58 @@
+"""What many tests share: the command line as people call it, and a run that takes no time."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeAlias
+
+import pytest
+
+FUZZYQ = Path(sys.executable).with_name("fuzzyq")
+
+Call: TypeAlias = Callable[..., "subprocess.CompletedProcess[str]"]
+
+SHORT = """\
+name: short
+arena: {size: [3.0, 2.0]}
+start: {position: [0.6, 0.6]}
+goal: {position: [1.4, 0.7]}
+obstacles:
+  - {shape: cylinder, position: [2.3, 1.4], radius: 0.2}
+  - {shape: box, position: [1.2, 1.5], size: [0.3, 0.2], yaw: 0.4}
+"""
+
+
+@pytest.fixture(scope="session")
+def fuzzyq() -> Call:
+    """The installed command, in a process of its own."""
+
+    def call(
+        *args: object, cwd: Path | None = None, **more: object
+    ) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(  # type: ignore[call-overload, no-any-return]
+            [FUZZYQ, *map(str, args)], cwd=cwd, capture_output=True, text=True, timeout=120, **more
+        )
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def short(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A scenario of less than a metre."""
+    path = tmp_path_factory.mktemp("scenario") / "short.yaml"
+    path.write_text(SHORT)
+    return path
+
+
+@pytest.fixture(scope="session")
+def filmed(fuzzyq: Call, short: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All that a run of ``short`` writes, and what it printed; not to be changed."""
+    folder = tmp_path_factory.mktemp("filmed")
+    done = fuzzyq("run", short, "--out", folder, "--json")
+    assert done.returncode == 0, done.stderr
+    (folder / "stdout").write_text(done.stdout)
+    (folder / "stderr").write_text(done.stderr)
+    return folder
