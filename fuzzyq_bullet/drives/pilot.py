@@ -71,8 +71,15 @@ class Pilot:
 
 def ramp(now: Twist, wanted: Twist, robot: Robot, dt: float) -> Twist:
     """Return the twist after ``dt`` seconds of moving towards the wanted one within the limits."""
-    dv, dw = robot.acceleration * dt, robot.turn_acceleration * dt
     return Twist(
-        now.speed + max(-dv, min(dv, wanted.speed - now.speed)),
-        now.turn_rate + max(-dw, min(dw, wanted.turn_rate - now.turn_rate)),
+        _towards(now.speed, wanted.speed, robot.acceleration * dt),
+        _towards(now.turn_rate, wanted.turn_rate, robot.turn_acceleration * dt),
     )
+
+
+def _towards(value: float, goal: float, most: float) -> float:
+    if goal > value + most:
+        return value + most
+    if goal < value - most:
+        return value - most
+    return goal

@@ -14,13 +14,13 @@ from fuzzyq_bullet.planning.base import Decision, Motion, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
 
-COMMAND_STEPS = 2
-"""Physics steps between two wheel commands: 120 a second, so that the ramp of the acceleration
+COMMAND_STEPS = 3
+"""Physics steps between two wheel commands: 80 a second, so that the ramp of the acceleration
 limit never asks the tyres for a jump they cannot hold."""
-TICK_STEPS = 16
-"""Physics steps between two ticks: 15 a second."""
-DECISION_TICKS = 3
-"""Ticks between two decisions: 5 a second."""
+TICK_STEPS = 15
+"""Physics steps between two ticks: 16 a second."""
+DECISION_TICKS = 4
+"""Ticks between two decisions: 4 a second."""
 
 RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05
@@ -45,8 +45,6 @@ class WheelsDriver:
         )
         self._pilot = Pilot(scenario.robot, TICK_STEPS * TIME_STEP)
         self._twist = STILL
-        # Twice the way that it can go in one tick: whatever is farther away cannot be touched.
-        self._reachable = 2.0 * scenario.robot.max_speed * TICK_STEPS * TIME_STEP
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
@@ -95,7 +93,8 @@ class WheelsDriver:
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
         world, left = self._world, TICK_STEPS
-        watch = self.ticks[-1].clearance <= self._reachable
+        tick = self.ticks[-1]
+        watch = tick.clearance <= self._reachable(tick.speed)
         while left:
             now = self._twist
             if now == wanted:
@@ -110,6 +109,15 @@ class WheelsDriver:
                 return contact
             left -= stride
         return None
+
+    def _reachable(self, speed: float) -> float:
+        """Return a way (m) that the robot surely does not exceed within a tick.
+
+        Whatever is farther away cannot be touched: it would take twice the acceleration that the
+        wheels are ever asked for.
+        """
+        tick = TICK_STEPS * TIME_STEP
+        return (abs(speed) + 2.0 * self._limits.acceleration * tick) * tick
 
     def _collision(self, contact: Contact) -> Collision:
         x, y, _ = contact.point

@@ -17,8 +17,9 @@ from fuzzyq_bullet.scenario import Arena, Goal, Limits, Random, Scenario, Start,
 
 SIMULATED = 20.0
 """Simulated time of one timed episode (s)."""
-DENSITY = 125 / 100.0
-"""Obstacles a square metre: the paper's densest field; a larger count gets a larger arena."""
+MOST = 1000
+SIDE = math.sqrt(MOST / (125 / 100.0))
+"""Side of the arena (m) in which 1000 obstacles stand as densely as the paper's 125 in 10 × 10 m."""
 
 
 @dataclass(frozen=True)
@@ -37,20 +38,25 @@ class Loop:
 
 
 def prepare(count: int, seed: int) -> Loop:
-    """Build a world of ``count`` obstacles and return both works in it."""
-    side = math.sqrt(max(count, 1) / DENSITY)
-    scenario = realise(
+    """Build a world of ``count`` obstacles, at most 1000, and return both works in it.
+
+    Fewer obstacles are those nearest to the way of the robot out of the same 1000, so that the
+    robot meets the same things and drives the same way, whatever the number.
+    """
+    full = realise(
         Scenario(
             name=f"speed-{count}",
             seed=seed,
-            arena=Arena(size=(side, side)),
+            arena=Arena(size=(SIDE, SIDE)),
             start=Start(position=(1.0, 1.0)),
-            goal=Goal(position=(side - 1.0, side - 1.0)),
+            goal=Goal(position=(9.0, 9.0)),
             planner=ImprovedFuzzySettings(weights=(1.0, 1.0)),
-            random=Random(count=count),
+            random=Random(count=MOST),
             limits=Limits(time=SIMULATED),
         )
     )
+    nearest = sorted(full.obstacles, key=lambda one: math.dist(one.position, (5.0, 5.0)))
+    scenario = full.model_copy(update={"obstacles": tuple(nearest[:count])})
     world = World(scenario.obstacles, scenario.arena)
 
     def whole() -> int:

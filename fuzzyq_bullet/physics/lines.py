@@ -40,12 +40,12 @@ class LineBundle:
         rim = np.sqrt(wide**2 - offset**2)
         self.reach = reach
         self._height = height
-        self._rim = rim
-        self._length = rim + reach
+        self._rims: list[float] = rim.tolist()
+        self._lengths: list[float] = (rim + reach).tolist()
         # Points of the plane as complex numbers, so that a turn is one product: the starts of all
         # rays and of the right and left probe, then their ends, for a robot that faces along x.
         starts = np.concatenate([1j * offset, [-1j * radius, 1j * radius]])
-        ends = np.concatenate([self._length + 1j * offset, [-1j * wide, 1j * wide]])
+        ends = np.concatenate([rim + reach + 1j * offset, [-1j * wide, 1j * wide]])
         self._local = np.array([starts, ends])[:, None, :]
 
     def rays(self, origin: tuple[float, float], headings: Sequence[float]) -> tuple[Floats, Floats]:
@@ -60,15 +60,17 @@ class LineBundle:
         """Return the free travel (m) along each heading, shape (K,), in [0, reach].
 
         Args:
-            fractions: Where each ray ended as a part of its length (1: no hit), shape (K·14,).
+            fractions: Where each ray ended as a part of its length (1: no hit), K·14 of them.
         """
-        ended = np.array(fractions).reshape(-1, self._rim.size + 2)
-        travel = ended[:, :-2] * self._length
-        travel -= self._rim
-        probes = ended[:, -2:]
-        if probes.min() < 1.0:
-            travel[probes[:, 0] < 1.0, 0] = np.inf
-            travel[probes[:, 1] < 1.0, -1] = np.inf
-        least: Floats = travel.min(axis=1)
-        np.maximum(least, 0.0, out=least)
-        return np.minimum(least, self.reach, out=least)
+        # Plain numbers: for so few of them an array costs more than it saves.
+        rays = len(self._rims)
+        travels = []
+        for first in range(0, len(fractions), rays + 2):
+            right, left = fractions[first + rays : first + rays + 2]
+            least = self.reach
+            for ray in range(right < 1.0, rays - (left < 1.0)):
+                travel = fractions[first + ray] * self._lengths[ray] - self._rims[ray]
+                if travel < least:
+                    least = travel
+            travels.append(max(0.0, least))
+        return np.array(travels)

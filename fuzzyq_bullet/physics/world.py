@@ -130,21 +130,13 @@ class World:
             search = CLEARANCE_RANGE
         width, depth = self._arena.size
         near_wall = min(x, width - x, y, depth - y) - ROBOT_RADIUS <= search
-        nearest = min(
-            (
-                point[8]
-                for body in (self._obstacles, self.walls if near_wall else None)
-                if body is not None
+        nearest = math.inf
+        for body in (self._obstacles, self.walls if near_wall else None):
+            if body is not None:
                 for point in self._api.getClosestPoints(
-                    self.robot.body,
-                    body,
-                    search,
-                    linkIndexA=-1,
-                    physicsClientId=self.engine.client,
-                )
-            ),
-            default=math.inf,
-        )
+                    self.robot.body, body, search, -1, -1, physicsClientId=self.engine.client
+                ):
+                    nearest = min(nearest, point[8])
         self._last_clearance, self._last_asked = nearest, (x, y)
         return nearest
 
