@@ -135,6 +135,21 @@ class Field:
                 index, least = int(self._order[first]), float(to_obstacles[first])
         return index, least
 
+    def touching(self, point: ArrayLike) -> tuple[int, tuple[float, float]]:
+        """Return what is nearest to ``point``, shape (2,), as ``nearest`` does, and where (m).
+
+        The place is that on the nearest surface; an obstacle's centre for a point at its centre.
+        """
+        x, y = np.asarray(point, dtype=np.float64).reshape(2).tolist()
+        index, distance = self.nearest((x, y))
+        step = 1e-6  # the distance falls fastest straight towards what is nearest
+        east, west, north, south = self.clearance(
+            [(x + step, y), (x - step, y), (x, y + step), (x, y - step)]
+        ).tolist()
+        dx, dy = west - east, south - north
+        size = math.hypot(dx, dy) or 1.0
+        return index, (x + distance * dx / size, y + distance * dy / size)
+
     def clearance(self, points: ArrayLike) -> Floats:
         """Return the signed distance (m), shape (K,), from each point to the nearest surface.
 

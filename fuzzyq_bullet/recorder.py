@@ -31,8 +31,10 @@ def recorded(
     taken = [decision for _, decision in decisions]
 
     def column(name: str, *shape: int) -> Floats:
-        values = [getattr(decision, name) for decision in taken]
-        return np.array(values, dtype=np.float64).reshape(len(taken), *shape)
+        values = np.array([getattr(decision, name) for decision in taken], dtype=np.float64)
+        # What a planner cannot put into a number is not explained; only a reach may be endless.
+        known = values if name == "reach" else np.where(np.isinf(values), np.nan, values)
+        return known.reshape(len(taken), *shape)
 
     return Trajectory(
         scenario=scenario,

@@ -95,7 +95,7 @@ def test_it_flows_and_does_not_stop_to_turn(crossing):
 
 def test_it_decides_several_times_a_second(crossing):
     taken = crossing.ticks.time[crossing.decisions.tick]
-    assert np.diff(taken).max() <= 0.2 + 1e-9
+    assert np.diff(taken).max() <= 0.25 + 1e-9
 
 
 def test_it_never_outruns_its_braking_distance():
@@ -153,7 +153,7 @@ def test_a_touch_is_a_collision_that_says_when_where_and_what(drive):
     assert hit.obstacle == 1
     assert hit.time == pytest.approx(trajectory.ticks.time[-1])
     assert trajectory.ticks.position[-1][0] == pytest.approx(3.0 - 0.4, abs=0.02)
-    assert math.dist(hit.point, (3.0, 2.5)) < 0.45
+    assert hit.point == pytest.approx((2.8, 2.5), abs=0.02)
     assert result_of(trajectory).collisions == 1
 
 

@@ -217,3 +217,19 @@ def test_a_field_is_frozen_and_shares_no_memory_with_what_it_was_built_from():
 def test_numbering_an_obstacle_twice_is_refused():
     with pytest.raises(ValueError, match="number all obstacles once"):
         Field(np.ones((2, 3)), cylinder_index=np.array([0, 0]))
+
+
+def test_where_something_is_touched_lies_on_its_surface() -> None:
+    field = Field(
+        cylinders=np.array([[2.0, 2.0, 0.5]]),
+        boxes=np.array([[6.0, 2.0, 2.0, 1.0, 0.0]]),
+        arena=(10.0, 10.0),
+    )
+    for point, index, place in [
+        ((3.0, 2.0), 0, (2.5, 2.0)),
+        ((6.2, 3.0), 1, (6.2, 2.5)),
+        ((5.0, 9.7), WALL, (5.0, 10.0)),
+    ]:
+        found, touched = field.touching(point)
+        assert found == index
+        assert touched == pytest.approx(place, abs=1e-4)

@@ -60,9 +60,9 @@ class KinematicDriver:
         self.steps += 1
         self._record(x, y, decision.heading, moved / self._step_time)
         if hit:
-            index, _ = self._field.nearest((x, y))
+            index, touched = self._field.touching((x, y))
             self.collision = Collision(
-                time=self.ticks[-1].time, point=(x, y), obstacle=index, normal_force=0.0
+                time=self.ticks[-1].time, point=touched, obstacle=index, normal_force=0.0
             )
         self.arrived = math.dist((x, y), self._goal.position) <= self._goal.radius
 

@@ -17,9 +17,9 @@ from fuzzyq_bullet.trajectory import Collision
 COMMAND_STEPS = 3
 """Physics steps between two wheel commands: 80 a second, so that the ramp of the acceleration
 limit never asks the tyres for a jump they cannot hold."""
-TICK_STEPS = 15
-"""Physics steps between two ticks: 16 a second."""
-DECISION_TICKS = 4
+TICK_STEPS = 20
+"""Physics steps between two ticks: 12 a second."""
+DECISION_TICKS = 3
 """Ticks between two decisions: 4 a second."""
 
 RESTING_SPEED = 0.01
@@ -93,31 +93,29 @@ class WheelsDriver:
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
         world, left = self._world, TICK_STEPS
-        tick = self.ticks[-1]
-        watch = tick.clearance <= self._reachable(tick.speed)
+        apart = self._steps_apart(self.ticks[-1])
         while left:
-            now = self._twist
-            if now == wanted:
-                stride = left
-            else:
-                stride = COMMAND_STEPS
-                now = self._twist = ramp(now, wanted, self._limits, COMMAND_STEPS * TIME_STEP)
+            now, stride = self._twist, left
+            if now != wanted:
+                stride = min(COMMAND_STEPS, left)
+                now = self._twist = ramp(now, wanted, self._limits, stride * TIME_STEP)
                 world.robot.command(*wheel_commands(*now))
-            taken, contact = world.advance(stride, watch=watch)
+            taken, contact = world.advance(stride, apart=apart)
             self.steps += taken
             if contact is not None:
                 return contact
             left -= stride
+            apart -= stride
         return None
 
-    def _reachable(self, speed: float) -> float:
-        """Return a way (m) that the robot surely does not exceed within a tick.
+    def _steps_apart(self, tick: Tick) -> int:
+        """Return for how many steps from a tick on the robot surely cannot touch anything.
 
-        Whatever is farther away cannot be touched: it would take twice the acceleration that the
+        To come nearer to what is nearest than this, it would take twice the acceleration that the
         wheels are ever asked for.
         """
-        tick = TICK_STEPS * TIME_STEP
-        return (abs(speed) + 2.0 * self._limits.acceleration * tick) * tick
+        fastest = abs(tick.speed) + 2.0 * self._limits.acceleration * TICK_STEPS * TIME_STEP
+        return int(min(tick.clearance / (fastest * TIME_STEP), TICK_STEPS))
 
     def _collision(self, contact: Contact) -> Collision:
         x, y, _ = contact.point
