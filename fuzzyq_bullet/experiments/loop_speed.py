@@ -19,7 +19,7 @@ SIMULATED = 20.0
 """Simulated time of one timed episode (s)."""
 MOST = 1000
 SIDE = math.sqrt(MOST / (125 / 100.0))
-"""Side of the arena (m) in which 1000 obstacles stand as densely as the paper's 125 in 10 × 10 m."""
+"""Side of the arena (m) in which 1000 obstacles are as dense as the paper's 125 in 10 × 10 m."""
 
 
 @dataclass(frozen=True)

@@ -57,3 +57,9 @@ class ImprovedFuzzySettings(RoutineSettings):
     guard: Annotated[bool, Strict()] = Field(
         default=True, description="Whether a corridor along the final heading caps the step."
     )
+    breakout: Annotated[bool, Strict()] = Field(
+        default=True, description="Whether it breaks out of dead ends (4.2)."
+    )
+    following: Annotated[bool, Strict()] = Field(
+        default=True, description="Whether it follows large obstacles after a breakout (4.3)."
+    )

@@ -30,6 +30,7 @@ from fuzzyq_bullet.scenario.models import (
 )
 from fuzzyq_bullet.scenario.options import with_options
 from fuzzyq_bullet.scenario.schema import scenario_schema
+from fuzzyq_bullet.scenario.tasks import random_task
 
 __all__ = [
     "MAX_OBSTACLES",
@@ -55,6 +56,7 @@ __all__ = [
     "find_scenario",
     "load_scenario",
     "parse_scenario",
+    "random_task",
     "realise",
     "save_scenario",
     "scenario_schema",

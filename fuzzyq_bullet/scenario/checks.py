@@ -12,13 +12,11 @@ import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, ROBOT_RADIUS, Box, Obstacle, Scenario
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Box, Obstacle, Scenario
 from fuzzyq_bullet.scenario.problems import MAX_SHOWN, Loc, key_path
+from fuzzyq_bullet.scenario.shapes import TOUCH
 
 Conflict: TypeAlias = tuple[Loc, str]
-
-TOUCH = 1e-6
-"""Things closer than this (m) touch, and the physics counts a touch as a collision."""
 
 
 def find_conflicts(scenario: Scenario) -> list[Conflict]:
@@ -26,8 +24,8 @@ def find_conflicts(scenario: Scenario) -> list[Conflict]:
 
     Conflicts are: start or goal outside the arena; the robot's disc at the start, or at the centre
     of the goal, touching a wall or an obstacle; a start within the goal (a run of no steps, with
-    no shortest path to measure it by); an obstacle wholly outside the walls; random obstacles that
-    are too large for the arena or too many. Obstacles may overlap each other and poke through
+    no shortest path to measure it by); an obstacle wholly outside the walls; obstacles to be drawn
+    that are too large for the arena or too many. Obstacles may overlap each other and poke through
     walls.
     """
     return [
@@ -97,20 +95,9 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
 
 
 def _random(scenario: Scenario) -> list[Conflict]:
-    random = scenario.random
-    if random is None or random.count == 0:
+    if scenario.random is None:
         return []
-    found: list[Conflict] = []
-    least = min(scenario.arena.size)
-    if 2.0 * random.radius > least:
-        found.append(
-            (("random", "radius"), f"must be at most {least / 2:g} to fit, got {random.radius:g}")
-        )
-    room = MAX_OBSTACLES - len(scenario.obstacles)
-    if random.count > room:
-        message = f"must be at most {room} beside the listed obstacles, got {random.count}"
-        found.append((("random", "count"), message))
-    return found
+    return [(("random", *loc), why) for loc, why in scenario.random.conflicts(scenario)]
 
 
 def _is_outside(item: Obstacle, width: float, depth: float) -> bool:

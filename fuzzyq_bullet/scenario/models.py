@@ -11,41 +11,31 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    SerializeAsAny,
-    Strict,
-    ValidationError,
-)
+from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationError
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
 from fuzzyq_bullet.planning.settings import PlannerSettings
+from fuzzyq_bullet.scenario.layouts.registry import AnyLayout
+from fuzzyq_bullet.scenario.layouts.scatter import Random
+from fuzzyq_bullet.scenario.shapes import (
+    MAX_OBSTACLES,
+    MIN_RADIUS,
+    ROBOT_RADIUS,
+    Angle,
+    Box,
+    Count,
+    Cylinder,
+    Flag,
+    Length,
+    Model,
+    Number,
+    Obstacle,
+    Point,
+)
 
-Number: TypeAlias = Annotated[float, Strict(), Field(allow_inf_nan=False)]
-Coordinate: TypeAlias = Annotated[Number, Field(ge=-1000.0, le=1000.0)]
-Length: TypeAlias = Annotated[Number, Field(gt=0.0, le=1000.0)]
-Angle: TypeAlias = Annotated[Number, Field(ge=-100.0, le=100.0)]
-Count: TypeAlias = Annotated[int, Strict()]
-Flag: TypeAlias = Annotated[bool, Strict()]
-Point: TypeAlias = tuple[Coordinate, Coordinate]
 Drive: TypeAlias = Literal["wheels", "kinematic"]
 OutcomeName: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
-
-MAX_OBSTACLES = 10_000
-ROBOT_RADIUS = 0.2
-"""Radius of the robot's disc (m): one unit of the paper; the shape in ``assets/robot.urdf``."""
-MIN_RADIUS = 0.025
-"""Nothing thinner than twice this is sure to be hit by a ray of a detection line (m)."""
-
-
-class Model(BaseModel):
-    """Base of all scenario models: immutable, and unknown keys are mistakes."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Arena(Model):
@@ -89,42 +79,6 @@ class Robot(Model):
     turn_acceleration: Annotated[Number, Field(ge=0.5, le=10.0)] = Field(
         default=6.0, description="Greatest change of the turn rate (rad/s²)."
     )
-
-
-class Cylinder(Model):
-    """An upright cylinder."""
-
-    shape: Literal["cylinder"]
-    position: Point = Field(description="Centre (m).")
-    radius: Annotated[Number, Field(ge=MIN_RADIUS, le=1000.0)] = Field(description="Radius (m).")
-
-
-class Box(Model):
-    """An upright box."""
-
-    shape: Literal["box"]
-    position: Point = Field(description="Centre (m).")
-    size: tuple[
-        Annotated[Number, Field(ge=2 * MIN_RADIUS, le=1000.0)],
-        Annotated[Number, Field(ge=2 * MIN_RADIUS, le=1000.0)],
-    ] = Field(description="Length along its own x and y (m).")
-    yaw: Angle = Field(default=0.0, description="Turn of its own x axis (rad), anticlockwise.")
-
-
-Obstacle: TypeAlias = Annotated[Cylinder | Box, Field(discriminator="shape")]
-
-
-class Random(Model):
-    """Obstacles at random places: Algorithm 2, with its intent restored."""
-
-    count: Annotated[Count, Field(ge=0, le=MAX_OBSTACLES)] = Field(description="How many.")
-    radius: Annotated[Number, Field(ge=MIN_RADIUS, le=1000.0)] = Field(
-        default=0.2, description="Radius of each (m)."
-    )
-    margin: Annotated[Number, Field(ge=0.0, le=100.0)] = Field(
-        default=0.1, description="Least gap to the robot at the start and to the goal disc (m)."
-    )
-    overlap: Flag = Field(default=True, description="Whether obstacles may overlap one another.")
 
 
 class Limits(Model):
@@ -201,7 +155,9 @@ class Scenario(Model):
     )
     drive: Drive = "wheels"
     obstacles: tuple[Obstacle, ...] = Field(default=(), max_length=MAX_OBSTACLES)
-    random: Random | None = None
+    random: AnyLayout | None = Field(
+        default=None, description="Obstacles to be drawn; without a layout, scattered."
+    )
     limits: Limits = Limits()
     expect: Expect = Expect()
 
@@ -212,3 +168,26 @@ class Scenario(Model):
         dx = self.goal.position[0] - self.start.position[0]
         dy = self.goal.position[1] - self.start.position[1]
         return math.atan2(dy, dx)
+
+
+__all__ = [
+    "MAX_OBSTACLES",
+    "MIN_RADIUS",
+    "ROBOT_RADIUS",
+    "Angle",
+    "Arena",
+    "Box",
+    "Cylinder",
+    "Drive",
+    "Expect",
+    "Goal",
+    "Limits",
+    "Model",
+    "Obstacle",
+    "OutcomeName",
+    "Point",
+    "Random",
+    "Robot",
+    "Scenario",
+    "Start",
+]

@@ -114,8 +114,9 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
         shapes = ", ".join(_SHAPES)
         return Problem((*loc, "shape"), f"is required; allowed: {shapes}", missing=True)
     if kind == "union_tag_invalid":
-        shape = context["tag"]
-        return Problem((*loc, "shape"), _refusal(f"no shape {shorten(shape)}", shape, _SHAPES))
+        key, tag = context["discriminator"].strip("'"), context["tag"]
+        allowed = re.findall("'([^']*)'", context["expected_tags"])
+        return Problem((*loc, key), _refusal(f"no {key} {shorten(tag)}", tag, allowed))
     if kind == "unknown_planner":
         what = f"no planner {shorten(value)}"
         return Problem(loc, _refusal(what, value, context["allowed"]))
@@ -127,7 +128,9 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
 
 
 def _without_tag(loc: Loc) -> Loc:
-    """Drop the shape that pydantic puts behind an obstacle's index."""
+    """Drop the shape that pydantic puts behind an obstacle's index, and the layout's name."""
+    if loc[0] == "random":
+        return loc[:1] + loc[2:]
     return loc[:2] + loc[3:] if loc[0] == "obstacles" and loc[2:3] and loc[2] in _SHAPES else loc
 
 
@@ -226,5 +229,8 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 
 
 def _tags(kind: type[BaseModel]) -> tuple[Any, ...]:
-    shape = kind.model_fields.get("shape")
-    return typing.get_args(shape.annotation) if shape else ()
+    """Return the values that choose this model among others, as pydantic puts them into places."""
+    for key in ("shape", "layout"):
+        if key in kind.model_fields:
+            return typing.get_args(kind.model_fields[key].annotation)
+    return ()

@@ -1,26 +1,20 @@
-"""Layouts: the parts of a scenario that say how obstacles are to be drawn, made into obstacles.
+"""Layouts: what a scenario asks to be drawn, made into obstacles.
 
-A layout is a key of the scenario and a generator for it: one new file here and one line in
-``GENERATORS``.
+A layout is one file here, a model of its parameters that can draw, and one line in ``registry``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.scenario.layouts.scatter import scatter
-from fuzzyq_bullet.scenario.models import Obstacle, Scenario
-
-Generator = Callable[[Scenario, np.random.Generator], tuple[Obstacle, ...]]
-
-GENERATORS: dict[str, Generator] = {"random": scatter}
-"""Generators by the scenario's key that asks for them, in the order in which they draw."""
+if TYPE_CHECKING:
+    from fuzzyq_bullet.scenario.models import Scenario
 
 
 def realise(scenario: Scenario, seed: int | None = None) -> Scenario:
-    """Return the scenario with every drawn part replaced by the obstacles it stands for.
+    """Return the scenario with its ``random`` part replaced by the obstacles it stands for.
 
     The result is what is run, recorded and saved: it has no ``random`` part, its obstacles are the
     listed ones followed by the drawn ones, and ``seed`` is the one they were drawn with. The same
@@ -34,13 +28,11 @@ def realise(scenario: Scenario, seed: int | None = None) -> Scenario:
         UserError: If the obstacles asked for cannot be placed.
     """
     seed = scenario.seed if seed is None else seed
-    rng = np.random.default_rng(seed)
-    for key, generate in GENERATORS.items():
-        if getattr(scenario, key) is not None:
-            drawn = generate(scenario, rng)
-            update = {"obstacles": scenario.obstacles + drawn, key: None}
-            scenario = scenario.model_copy(update=update)
-    return scenario.model_copy(update={"seed": seed})
+    if scenario.random is None:
+        return scenario.model_copy(update={"seed": seed})
+    drawn = scenario.random.draw(scenario, np.random.default_rng(seed))
+    obstacles = (*scenario.obstacles, *drawn)
+    return scenario.model_copy(update={"obstacles": obstacles, "random": None, "seed": seed})
 
 
-__all__ = ["GENERATORS", "Generator", "realise"]
+__all__ = ["realise"]

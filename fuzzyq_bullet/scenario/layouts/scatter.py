@@ -10,16 +10,29 @@ within the arena, and what cannot be done is said.
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field as Given
 from scipy.spatial import KDTree
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.scenario.checks import TOUCH
-from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, ROBOT_RADIUS, Cylinder, Random, Scenario
+from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout, too_many
+from fuzzyq_bullet.scenario.shapes import (
+    MAX_OBSTACLES,
+    MIN_RADIUS,
+    ROBOT_RADIUS,
+    TOUCH,
+    Count,
+    Cylinder,
+    Flag,
+    Number,
+)
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.scenario.models import Scenario
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -32,18 +45,47 @@ _DENSEST = math.pi / math.sqrt(12.0)
 """Share of the plane that equal discs can cover at most without overlap."""
 
 
-def scatter(scenario: Scenario, rng: np.random.Generator) -> tuple[Cylinder, ...]:
-    """Draw the cylinders that ``scenario.random`` asks for, exactly as many.
+class Random(Layout):
+    """Obstacles at random places: Algorithm 2, with its intent restored."""
+
+    layout: Literal["scatter"] = "scatter"
+    count: Annotated[Count, Given(ge=0, le=MAX_OBSTACLES)] = Given(description="How many.")
+    radius: Annotated[Number, Given(ge=MIN_RADIUS, le=1000.0)] = Given(
+        default=0.2, description="Radius of each (m)."
+    )
+    margin: Annotated[Number, Given(ge=0.0, le=100.0)] = Given(
+        default=0.1, description="Least gap to the robot at the start and to the goal disc (m)."
+    )
+    overlap: Flag = Given(default=True, description="Whether obstacles may overlap one another.")
+
+    def draw(self, scenario: Scenario, rng: np.random.Generator) -> tuple[Cylinder, ...]:
+        """Draw the cylinders, exactly as many."""
+        return scatter(scenario, self, rng)
+
+    def conflicts(self, scenario: Scenario) -> list[Conflict]:
+        """Return what is too large for the arena or too many."""
+        if self.count == 0:
+            return []
+        found: list[Conflict] = []
+        least = min(scenario.arena.size)
+        if 2.0 * self.radius > least:
+            message = f"must be at most {least / 2:g} to fit, got {self.radius:g}"
+            found.append((("radius",), message))
+        return found + too_many(scenario, self.count)
+
+
+def scatter(scenario: Scenario, wanted: Random, rng: np.random.Generator) -> tuple[Cylinder, ...]:
+    """Draw cylinders at random places, exactly as many as wanted.
 
     Args:
         scenario: Its start, goal, arena and listed obstacles are heeded.
+        wanted: How many, and how.
         rng: Where the places come from.
 
     Raises:
         UserError: If so many cannot be placed.
     """
-    wanted = scenario.random
-    if wanted is None or wanted.count == 0:
+    if wanted.count == 0:
         return ()
     if len(scenario.obstacles) + wanted.count > MAX_OBSTACLES:
         raise UserError(
