@@ -1,0 +1,127 @@
+"""The truth about a scenario that no planner may see: whether there is a way, and the shortest.
+
+Exact, by the tangent graph: seen by the centre of a disc, cylinders are larger discs and boxes
+are rounded rectangles, and a shortest path is made of straight lines that touch such discs and of
+arcs around them. No grid, so no gap is too narrow to be found. The one tolerance is ``GRAZE``, and
+it errs on one side: a gap too narrow by no more than 2 nm counts as open, so that rounding never
+makes a feasible world infeasible, and lengths are never too long by more than rounding.
+
+The path ends where a run may end: at the first point of the goal disc. What a robot drives from
+start to goal is therefore never shorter, and SPL is at most 1.
+
+Nothing that drives or plans may import this package.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from fuzzyq_bullet.oracle.route import Route
+from fuzzyq_bullet.oracle.search import is_connected, shortest_route
+from fuzzyq_bullet.oracle.world import GRAZE, GrownWorld
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle, Point, Scenario
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Key: TypeAlias = tuple[
+        tuple[Obstacle, ...], tuple[float, float] | None, Point, Point, float, float
+    ]
+
+_REMEMBERED = 128
+"""Worlds whose answers are kept: a sweep asks for each world once for every planner."""
+
+
+def shortest_path(scenario: Scenario, radius: float = ROBOT_RADIUS) -> Route | None:
+    """Return the shortest way of a disc from the start to the goal disc; None if there is none.
+
+    Answers are remembered by geometry alone: planner, seed, drive and names make no difference.
+
+    Args:
+        scenario: A realised scenario (``scenario.realise``): every obstacle listed.
+        radius: Radius of the disc (m), more than 0.
+
+    Returns:
+        The route of the disc's centre. It has length 0 when the start is within the goal already.
+        None too when the disc does not fit at the start.
+
+    Raises:
+        ValueError: If obstacles are still to be drawn, or ``radius`` is not positive and finite.
+    """
+    return _route(*_key(scenario, radius))
+
+
+def feasible(scenario: Scenario, radius: float = ROBOT_RADIUS) -> bool:
+    """Return whether there is any way of a disc from the start to the goal disc.
+
+    Cheaper than ``shortest_path`` where there is one: it stops at the first way it finds.
+
+    Args:
+        scenario: A realised scenario.
+        radius: Radius of the disc (m), more than 0.
+
+    Raises:
+        ValueError: As ``shortest_path``.
+    """
+    return _is_feasible(*_key(scenario, radius))
+
+
+def spl(success: bool, shortest: float, driven: float) -> float:
+    """Return success weighted by path length (Anderson et al. 2018, arXiv:1807.06757), 0 to 1.
+
+    Args:
+        success: Whether the run reached the goal.
+        shortest: Length of the shortest path (m), at least 0.
+        driven: Length of the driven path (m), at least 0.
+
+    Returns:
+        ``success · shortest / max(driven, shortest)``; 1 for a success without any way to go.
+    """
+    if not success:
+        return 0.0
+    longest = max(driven, shortest)
+    return shortest / longest if longest > 0.0 else 1.0
+
+
+def _key(scenario: Scenario, radius: float) -> Key:
+    if scenario.random is not None:
+        raise ValueError(f"{scenario.name}: obstacles are still to be drawn; use realise() first")
+    if not (math.isfinite(radius) and radius > 2 * GRAZE):
+        raise ValueError(f"the radius must be positive and finite, got {radius}")
+    return (
+        scenario.obstacles,
+        scenario.arena.size if scenario.arena.walls else None,
+        scenario.start.position,
+        scenario.goal.position,
+        scenario.goal.radius,
+        radius,
+    )
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _route(
+    obstacles: tuple[Obstacle, ...],
+    walls: tuple[float, float] | None,
+    start: Point,
+    goal: Point,
+    goal_radius: float,
+    radius: float,
+) -> Route | None:
+    return shortest_route(GrownWorld.of(obstacles, walls, radius), start, goal, goal_radius)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _is_feasible(
+    obstacles: tuple[Obstacle, ...],
+    walls: tuple[float, float] | None,
+    start: Point,
+    goal: Point,
+    goal_radius: float,
+    radius: float,
+) -> bool:
+    return is_connected(GrownWorld.of(obstacles, walls, radius), start, goal, goal_radius)
+
+
+__all__ = ["GRAZE", "Route", "feasible", "shortest_path", "spl"]

@@ -1,0 +1,142 @@
+"""Obstacles as the centre of a disc sees them: larger discs, rounded boxes, walls moved inwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from fuzzyq_bullet.geometry import Field, Floats
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from fuzzyq_bullet.scenario.models import Obstacle
+
+GRAZE = 1e-9
+"""What is no deeper than this (m) within something grown only touches it."""
+TOUCHES = 2 * GRAZE
+"""The same for what was itself found to within ``GRAZE``."""
+_CHUNK = 1_000_000
+"""Most pairs of a line and an obstacle held in memory at once."""
+_NEAR = 16
+"""Discs about each end that a line is held against first: they stop most lines."""
+
+
+@dataclass(frozen=True, eq=False)
+class GrownWorld:
+    """Obstacles grown by the radius of the disc whose centre moves among them.
+
+    Attributes:
+        radius: Radius of the moving disc (m).
+        field: The obstacles and walls as they are.
+        centres: Shape (N, 2) (m): of all grown discs, those of cylinders and of boxes' corners.
+        radii: Shape (N,): radii of the grown discs (m).
+        boxes: Shape (6, M): x, y, half sizes, cos and sin of the yaw of each bare box.
+        near: Shape (N, K): for each disc, the discs with the nearest centres, nearest first.
+    """
+
+    radius: float
+    field: Field
+    centres: Floats
+    radii: Floats
+    boxes: Floats
+    near: NDArray[np.intp]
+
+    @classmethod
+    def of(
+        cls, obstacles: Sequence[Obstacle], walls: tuple[float, float] | None, radius: float
+    ) -> GrownWorld:
+        """Build it from obstacles and the size (m) that walls enclose, None without walls."""
+        bare = Field.of(obstacles)
+        field = Field(bare.cylinders, bare.boxes, walls, bare.cylinder_index, bare.box_index)
+        x, y, sx, sy, yaw = field.boxes.T
+        boxes = np.array([x, y, sx / 2, sy / 2, np.cos(yaw), np.sin(yaw)])
+        discs = [field.cylinders + np.array([0.0, 0.0, radius])]
+        _, _, hx, hy, cos, sin = boxes
+        for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+            cx, cy = x + a * hx * cos - b * hy * sin, y + a * hx * sin + b * hy * cos
+            discs.append(np.column_stack([cx, cy, np.full(len(x), radius)]))
+        all_discs = np.unique(np.concatenate(discs), axis=0)
+        centres, radii = all_discs[:, :2].copy(), all_discs[:, 2].copy()
+        return cls(radius, field, centres, radii, boxes, _nearest(centres))
+
+    def is_free(self, points: Floats) -> NDArray[np.bool_]:
+        """Tell for each point, shape (K, 2), whether the disc fits there; shape (K,)."""
+        free: NDArray[np.bool_] = self.field.clearance(points) >= self.radius - TOUCHES
+        return free
+
+    def are_open(
+        self,
+        begin: Floats,
+        end: Floats,
+        first: NDArray[np.intp] | None = None,
+        last: NDArray[np.intp] | None = None,
+    ) -> NDArray[np.bool_]:
+        """Tell for each straight line whether the disc can move along it; shape (S,).
+
+        Both ends must be free. Then a line that enters a rounded box enters one of its corners'
+        discs or crosses the bare box, and one between the walls stays there.
+
+        Args:
+            begin: Shape (S, 2) (m).
+            end: Shape (S, 2) (m).
+            first: Shape (S,): a disc near each beginning, if known; only makes it faster.
+            last: Shape (S,): the same for the ends.
+        """
+        alive = np.arange(len(begin))
+        for around in (first, last):
+            if around is None:
+                continue
+            for k in range(self.near.shape[1]):
+                disc = self.near[around[alive], k]
+                gap = _to_lines(begin[alive], end[alive], self.centres[disc])
+                alive = alive[gap >= self.radii[disc] - TOUCHES]
+        rows = max(1, _CHUNK // max(1, len(self.radii) + self.boxes.shape[1]))
+        open_ = np.zeros(len(begin), dtype=bool)
+        for k in range(0, len(alive), rows):
+            part = alive[k : k + rows]
+            a, b = begin[part, None], end[part, None]
+            clear = np.all(_to_lines(a, b, self.centres) >= self.radii - TOUCHES, axis=1)
+            part = part[clear]
+            open_[part] = ~self._cross_boxes(begin[part], end[part])
+        return open_
+
+    def _cross_boxes(self, begin: Floats, end: Floats) -> NDArray[np.bool_]:
+        """Tell for each line, shape (S,), whether it crosses the inside of a bare box."""
+        x, y, hx, hy, cos, sin = self.boxes
+        dx, dy = begin[:, :1] - x, begin[:, 1:] - y
+        vx, vy = end[:, :1] - begin[:, :1], end[:, 1:] - begin[:, 1:]
+        enter, leave = np.zeros_like(dx), np.ones_like(dx)
+        for at, speed, half in (
+            (dx * cos + dy * sin, vx * cos + vy * sin, hx),
+            (dy * cos - dx * sin, vy * cos - vx * sin, hy),
+        ):
+            still = np.where(np.abs(speed) < 1e-30, 1e-30, speed)
+            one, other = (-half - at) / still, (half - at) / still
+            np.maximum(enter, np.minimum(one, other), out=enter)
+            np.minimum(leave, np.maximum(one, other), out=leave)
+        crossed: NDArray[np.bool_] = np.any(enter < leave, axis=1)
+        return crossed
+
+
+def _to_lines(begin: Floats, end: Floats, points: Floats) -> Floats:
+    """Distance (m) from points to the straight lines between two others, elementwise."""
+    vx, vy = end[..., 0] - begin[..., 0], end[..., 1] - begin[..., 1]
+    wx, wy = points[..., 0] - begin[..., 0], points[..., 1] - begin[..., 1]
+    squared = np.maximum(vx * vx + vy * vy, 1e-300)
+    along = np.minimum(np.maximum((wx * vx + wy * vy) / squared, 0.0), 1.0)
+    distance: Floats = np.hypot(wx - along * vx, wy - along * vy)
+    return distance
+
+
+def _nearest(centres: Floats) -> NDArray[np.intp]:
+    count = min(_NEAR, len(centres))
+    if count == 0:
+        return np.zeros((0, 0), dtype=np.intp)
+    _, index = KDTree(centres).query(centres, k=np.arange(1, count + 1))
+    return np.asarray(index, dtype=np.intp)
