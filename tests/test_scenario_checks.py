@@ -54,7 +54,8 @@ def test_an_obstacle_on_the_start_or_goal_is_named_and_one_just_clear_of_it_is_n
     assert where(obstacles=[crate(9, 5.5, 2.0, 0.62)]) == [("obstacles", 0)]
     (found,) = conflicts(obstacles=[pillar(1.33, 5)])
     assert found[1] == (
-        "overlaps the start at (1, 5), which is 0.13 m from it; the robot needs more than 0.2 m"
+        "overlaps the start at (1, 5), which is 0.13 m from it; the robot needs more than 0.2 m: "
+        "move it by more than 0.07 m"
     )
     (found,) = conflicts(obstacles=[pillar(9, 5, 0.5)])
     assert "overlaps the goal at (9, 5), which is 0.5 m inside it" in found[1]

@@ -193,9 +193,9 @@ def test_anchors_and_aliases_may_be_used_and_mistakes_behind_them_keep_their_lin
     assert first == second
     assert problems(text + pillar.replace("[5, 5]", "*p")) == [
         "x.yaml:5: obstacles[0]: overlaps the start at (1, 5), which is 0.2 m inside it; "
-        "the robot needs more than 0.2 m",
+        "the robot needs more than 0.2 m: move it by more than 0.4 m",
         "x.yaml:6: obstacles[1]: overlaps the start at (1, 5), which is 0.2 m inside it; "
-        "the robot needs more than 0.2 m",
+        "the robot needs more than 0.2 m: move it by more than 0.4 m",
     ]
     assert problems(text + pillar.replace("0.2", "x")) == [
         "x.yaml:5: obstacles[0].radius: expected a number, got 'x'",

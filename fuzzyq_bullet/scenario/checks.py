@@ -60,7 +60,7 @@ def _places(scenario: Scenario) -> list[Conflict]:
                 ((key, "position"), f"({x:g}, {y:g}) is outside the arena, {width:g} × {depth:g} m")
             )
         elif scenario.arena.walls and gap <= ROBOT_RADIUS + TOUCH:
-            found.append(((key, "position"), f"is {gap:.3g} m from a wall; {_NEED}"))
+            found.append(((key, "position"), f"is {gap:.3g} m from a wall; {_remedy(gap)}"))
     apart = float(np.hypot(*np.subtract(scenario.start.position, scenario.goal.position)))
     if apart <= scenario.goal.radius:
         found.append(
@@ -81,7 +81,7 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
         gaps = field.distances(place.position)
         for i in np.flatnonzero(gaps <= ROBOT_RADIUS + TOUCH).tolist():
             where = f"{-gaps[i]:.3g} m inside it" if gaps[i] < 0 else f"{gaps[i]:.3g} m from it"
-            message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; {_NEED}"
+            message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; {_remedy(gaps[i])}"
             by_index[i] = (("obstacles", i), message)
     if scenario.arena.walls:
         width, depth = scenario.arena.size
@@ -121,4 +121,7 @@ def _is_outside(item: Obstacle, width: float, depth: float) -> bool:
     return bool(max(gaps) >= 0.0)
 
 
-_NEED = f"the robot needs more than {ROBOT_RADIUS:g} m"
+def _remedy(gap: float) -> str:
+    """Say how far to move what leaves the robot's centre this gap (m), negative inside it."""
+    lacking = max(round(ROBOT_RADIUS - gap, 3), 0.001)
+    return f"the robot needs more than {ROBOT_RADIUS:g} m: move it by more than {lacking:g} m"

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, get_args
 
+from pydantic import ValidationError
+
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.registry import planner_names, settings_for
 from fuzzyq_bullet.scenario.models import Drive, Scenario
-from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+from fuzzyq_bullet.scenario.problems import did_you_mean, key_path, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from fuzzyq_bullet.planning.settings import PlannerSettings
 
 MAX_SEED = 2**63 - 1
 
@@ -26,18 +30,19 @@ def with_options(
 
     Args:
         scenario: The scenario as it was loaded.
-        planner: Name of a planner; its parameters stay those of the scenario if it names the same
-            planner, and are the defaults otherwise.
+        planner: Name of a planner. It takes over what the scenario sets for its own planner, such
+            as the weights, as far as it has parameters of the same names; the rest are defaults.
         seed: 0 to 2⁶³ − 1.
         drive: ``wheels`` or ``kinematic``.
 
     Raises:
-        UserError: If one of them is not allowed.
+        UserError: If one of them is not allowed, or the planner does not accept what the scenario
+            sets.
     """
     update: dict[str, Any] = {}
     if planner is not None and planner != scenario.planner.name:
         _refuse_unless_one_of("planner", planner, planner_names())
-        update["planner"] = settings_for(planner).model_validate({"name": planner})
+        update["planner"] = _settings_of(planner, scenario.planner)
     if seed is not None:
         if not 0 <= seed <= MAX_SEED:
             raise UserError(f"seed: must be from 0 to {MAX_SEED}, got {seed}")
@@ -46,6 +51,22 @@ def with_options(
         _refuse_unless_one_of("drive", drive, get_args(Drive))
         update["drive"] = drive
     return scenario.model_copy(update=update) if update else scenario
+
+
+def _settings_of(planner: str, before: PlannerSettings) -> PlannerSettings:
+    """Return the settings of a planner with what was set for another; it drives alike thus."""
+    model = settings_for(planner)
+    known = model.model_fields.keys() - {"name"}
+    kept = before.model_dump(include=known, exclude_unset=True)
+    try:
+        return model.model_validate({**kept, "name": planner})
+    except ValidationError as error:
+        problems = []
+        for item in error.errors(include_url=False):
+            what = f"planner: {shorten(planner)} does not accept the scenario's"
+            place = key_path(("planner", *item["loc"]))
+            problems.append(f"{what} {place}: {' '.join(item['msg'].split())}")
+        raise UserError(*problems) from error
 
 
 def _refuse_unless_one_of(what: str, value: str, allowed: Sequence[str]) -> None:

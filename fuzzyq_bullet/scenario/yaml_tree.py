@@ -95,12 +95,20 @@ def read_tree(text: str, where: str) -> Node:
         mark = error.problem_mark or error.context_mark
         line = mark.line + 1 if mark is not None else 1
         context = f"{error.context}, " if error.context else ""
-        raise UserError(f"{where}:{line}: not valid YAML: {context}{error.problem}") from error
+        why = f"{context}{error.problem}"
+        if _is_indented_by_tab(text, line):
+            why = "tabs cannot indent; use spaces"
+        raise UserError(f"{where}:{line}: not valid YAML: {why}") from error
     except yaml.YAMLError as error:
         line = _line_of_unprintable(text)
         raise UserError(f"{where}:{line}: not valid YAML: an unprintable character") from error
     finally:
         loader.dispose()
+
+
+def _is_indented_by_tab(text: str, line: int) -> bool:
+    lines = re.split(r"\r\n|[\r\n\x85\u2028\u2029]", text)[line - 1 : line]
+    return any(re.match(r" *\t", shown) for shown in lines)
 
 
 def _line_of_unprintable(text: str) -> int:

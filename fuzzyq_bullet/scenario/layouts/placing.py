@@ -1,0 +1,96 @@
+"""Whether drawn obstacles may stand where they are: clear of start and goal, inside, a way left."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.ndimage import label
+
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.scenario.shapes import ROBOT_RADIUS, TOUCH, Box, Obstacle
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from fuzzyq_bullet.geometry import Floats
+    from fuzzyq_bullet.scenario.models import Scenario
+
+DECIMALS = 4
+_STEP = 0.05
+"""Distance of the places (m) among which ``leaves_a_way`` looks for one, in a usual arena."""
+_MOST_PLACES = 250_000
+_OUTSIDE = 2.0
+"""How far (m) beyond an arena without walls it looks."""
+
+
+def kept_clear(scenario: Scenario, margin: float) -> list[tuple[tuple[float, float], float]]:
+    """Return centres and radii (m) of the discs that drawn obstacles keep out of."""
+    goal = max(scenario.goal.radius, ROBOT_RADIUS)
+    discs = ((scenario.start.position, ROBOT_RADIUS), (scenario.goal.position, goal))
+    return [(centre, radius + margin + 2 * TOUCH) for centre, radius in discs]
+
+
+def is_clear(scenario: Scenario, obstacles: Sequence[Obstacle], margin: float) -> bool:
+    """Tell whether obstacles keep that margin (m) to the robot at the start and to the goal."""
+    field = Field.of(obstacles)
+    return all(field.nearest(centre)[1] > radius for centre, radius in kept_clear(scenario, margin))
+
+
+def corners(box: Box) -> Floats:
+    """Return the corners of a box, shape (4, 2), anticlockwise (m)."""
+    cos, sin = math.cos(box.yaw), math.sin(box.yaw)
+    half = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * np.array(box.size) / 2
+    placed: Floats = np.array(box.position) + half @ np.array([[cos, sin], [-sin, cos]])
+    return placed
+
+
+def is_inside(obstacle: Obstacle, size: tuple[float, float]) -> bool:
+    """Tell whether an obstacle lies wholly within an arena of that size (m)."""
+    if isinstance(obstacle, Box):
+        points, reach = corners(obstacle), 0.0
+    else:
+        points, reach = np.array([obstacle.position]), obstacle.radius
+    low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
+    return bool(np.all(low >= -TOUCH) and np.all(high <= np.array(size) + TOUCH))
+
+
+def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
+    """Tell whether the robot can surely get from start to goal among all obstacles.
+
+    Looks on a grid and is careful: what it finds is a way, but it may miss one that is hardly
+    wider than the robot.
+    """
+    width, depth = scenario.arena.size
+    outside = 0.0 if scenario.arena.walls else _OUTSIDE
+    step = max(_STEP, math.sqrt((width + 2 * outside) * (depth + 2 * outside) / _MOST_PLACES))
+    xs = np.arange(-outside, width + outside + step, step)
+    ys = np.arange(-outside, depth + outside + step, step)
+    places = np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1)
+    field = Field.of([*scenario.obstacles, *obstacles], scenario.arena)
+    clearance = field.clearance(places.reshape(-1, 2)).reshape(len(xs), len(ys))
+    # Half a step from either of two neighbours, that much clearance is left over.
+    regions, _ = label(clearance >= ROBOT_RADIUS + step / 2)
+    ends = [
+        _regions_at(np.array(place.position), field, places, clearance, regions, 3 * step)
+        for place in (scenario.start, scenario.goal)
+    ]
+    return bool(ends[0] & ends[1])
+
+
+def _regions_at(
+    point: Floats,
+    field: Field,
+    places: Floats,
+    clearance: Floats,
+    regions: NDArray[np.intp],
+    reach: float,
+) -> set[int]:
+    """Return the regions of places to which there is a short straight way from a point."""
+    apart = np.linalg.norm(places - point, axis=-1)
+    # Along a line of length L between clearances a and b, it is nowhere less than (a + b − L) / 2.
+    least = (clearance + field.clearance(point[None])[0] - apart) / 2
+    return set(np.unique(regions[(apart <= reach) & (regions > 0) & (least >= ROBOT_RADIUS)]))
