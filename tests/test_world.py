@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
+from fuzzyq_bullet.physics.lines import SPREAD
 from fuzzyq_bullet.physics.robot import wheel_commands
 from fuzzyq_bullet.physics.world import CLEARANCE_RANGE, SENSOR_MARGIN, SENSOR_RANGE, World
-from fuzzyq_bullet.scenario import ROBOT_RADIUS, Arena, Box, Cylinder
+from fuzzyq_bullet.scenario import MIN_RADIUS, ROBOT_RADIUS, Arena, Box, Cylinder
 
 FIELD = Arena(size=(6.0, 6.0))
 
@@ -155,6 +156,17 @@ def test_lines_agree_with_exact_geometry_on_random_worlds(engine):
     errors = np.concatenate(errors)
     assert errors.size > 1000
     assert np.median(errors) <= 0.01 * SENSOR_RANGE
+
+
+def test_nothing_of_the_least_width_slips_between_two_rays(engine):
+    least = 2 * MIN_RADIUS
+    for shape in (lambda y: box(2.5, y, least, least), lambda y: cylinder(2.5, y, MIN_RADIUS)):
+        for lateral in np.arange(-0.2, 0.2, 0.004):
+            world = World([shape(3.0 + lateral)], FIELD, engine=engine)
+            [ahead] = world.sense((2.0, 3.0), [0.0])
+            assert ahead < 0.5
+    offsets = (ROBOT_RADIUS + SENSOR_MARGIN) * np.concatenate([-SPREAD[::-1], SPREAD])
+    assert np.diff(offsets).max() < least
 
 
 def test_what_stands_beside_the_robot_does_not_stop_it(engine):

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
 
-SPREAD = np.array([0.11, 0.34, 0.56, 0.75, 0.91, 1.0])
+SPREAD = np.array([0.11, 0.33, 0.55, 0.75, 0.91, 1.0])
 """Offsets of the rays on either side, as parts of the corridor's half width.
 
-Neighbours in the middle are 0.05 m apart, the least width of an obstacle; towards the rim, where
-the front of the disc falls back ever faster, they are denser. The last but one runs just outside
-the robot's own side, so that not even the flattest graze along a wall gets past it.
+Neighbours are at most 0.0484 m apart, less than the least width of an obstacle, and denser towards
+the rim, where the front of the disc falls back ever faster. The last but one runs just outside the
+robot's own side, so that not even the flattest graze along a wall gets past it.
 """
 
 
@@ -69,8 +69,8 @@ class LineBundle:
             right, left = fractions[first + rays : first + rays + 2]
             least = self.reach
             for ray in range(right < 1.0, rays - (left < 1.0)):
-                travel = fractions[first + ray] * self._lengths[ray] - self._rims[ray]
-                if travel < least:
-                    least = travel
+                fraction = fractions[first + ray]
+                if fraction < 1.0:  # a free line is exactly as long as the range, not rounded
+                    least = min(least, fraction * self._lengths[ray] - self._rims[ray])
             travels.append(max(0.0, least))
         return np.array(travels)
