@@ -87,8 +87,9 @@ def test_it_goes_round_what_stands_in_the_way(crossing):
     assert crossing.decisions.difference.any()
 
 
-def test_it_flows_and_does_not_stop_to_turn(crossing):
-    ticks = crossing.ticks
+def test_it_flows_and_does_not_stop_to_turn():
+    plain = ImprovedFuzzySettings(weights=(1.0, 1.0), breakout=False)
+    ticks = run(scenario(obstacles=(cylinder(2.5, 2.6), cylinder(3.6, 2.2)), planner=plain)).ticks
     under_way = (ticks.time > 1.0) & (np.hypot(*(ticks.position - (4.5, 2.5)).T) > 0.5)
     assert ticks.speed[under_way].min() > 0.03
 
@@ -197,7 +198,8 @@ def test_a_dead_end_ends_as_stuck_and_a_short_limit_as_timeout():
         Box(shape="box", position=(2.2, 3.4), size=(0.8, 0.2)),
         Box(shape="box", position=(2.2, 1.6), size=(0.8, 0.2)),
     )
-    assert run(scenario(obstacles=trap)).outcome == "stuck"
+    plain = ImprovedFuzzySettings(weights=(1.0, 1.0), breakout=False)
+    assert run(scenario(obstacles=trap, planner=plain)).outcome == "stuck"
     short = run(scenario(limits=Limits(time=2.0)))
     assert short.outcome == "timeout"
     assert short.ticks.time[-1] == pytest.approx(2.0, abs=0.2)
@@ -275,4 +277,5 @@ def test_parts_that_come_later_are_null(crossing):
     result = result_of(crossing)
     assert result.shortest_path_m is None
     assert result.spl is None
-    assert result.modes.routine == result.decisions
+    modes = result.modes
+    assert modes.routine + modes.breakout + modes.following == result.decisions

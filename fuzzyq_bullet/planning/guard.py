@@ -11,9 +11,9 @@ from fuzzyq_bullet.planning.base import Decision, Motion, Observation
 RESERVE = 0.02
 """Free distance that is never used up (m): by so much a detection line may be too long where a
 corner stands between two of its rays."""
-NARROW = math.radians(2.0)
-"""Turns up to this stay within the margin of the one corridor along the new heading."""
-SAME = math.radians(0.5)
+NARROW = math.radians(0.3)
+"""Up to this a turn is none: one corridor covers where the robot faces and where it will."""
+SAME = math.radians(0.3)
 """A line already cast serves for headings as near to it as this."""
 WIDEST = math.radians(90.0)
 """Further round than this the robot does not get before it stands."""

@@ -1,0 +1,95 @@
+"""Turning a ray about until it is free: what breakout and sustained avoidance both do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from fuzzyq_bullet.planning.base import RangeSensor
+
+COARSE = math.radians(2.5)
+"""Angle between neighbouring rays of a sweep; steps of 45° find no way through a dense field."""
+FINE = 4
+"""Into how many parts the last step is divided, so that the robot goes close by what it rounds."""
+EASE = tuple(math.radians(degrees) for degrees in (10.0, 5.0, 2.0))
+"""Turns further away from what blocks, the widest that is free is taken: along the very edge of
+an obstacle the slightest error of heading leaves no way at all."""
+AT_ONCE = 16
+"""Rays cast in one batch; most sweeps end within the first."""
+
+
+class Found(NamedTuple):
+    """The first free direction of a sweep.
+
+    Attributes:
+        heading: World heading (rad).
+        free: Free distance along it (m).
+        turned: How far the sweep turned to find it (rad), at least 0.
+        blocked: Heading and free distance of the last ray that was not free, if one was not.
+    """
+
+    heading: float
+    free: float
+    turned: float
+    blocked: tuple[float, float] | None
+
+
+def first_free(
+    sense: RangeSensor, start: float, side: int, enough: float, limit: float = math.tau
+) -> Found | None:
+    """Turn from ``start`` to one side until a ray is free.
+
+    Args:
+        sense: The range sensor.
+        start: World heading to start from (rad).
+        side: +1 to the left, −1 to the right.
+        enough: What counts as free (m).
+        limit: How far to turn (rad).
+
+    Returns:
+        The first free direction, or None when there is none within the limit.
+    """
+    blocked: tuple[float, float] | None = None
+    turned_blocked = 0.0
+    for turned, free in _rays(sense, start, side, 0.0, COARSE, round(limit / COARSE) + 1):
+        if free < enough:
+            blocked, turned_blocked = (start + side * turned, free), turned
+            continue
+        if blocked is None:
+            return Found(start + side * turned, free, turned, None)
+        finer = (turned - turned_blocked) / FINE
+        for closer, length in _rays(sense, start, side, turned_blocked + finer, finer, FINE - 1):
+            if length >= enough:
+                return Found(start + side * closer, length, closer, blocked)
+            blocked = (start + side * closer, length)
+        return Found(start + side * turned, free, turned, blocked)
+    return None
+
+
+def eased(sense: RangeSensor, found: Found, side: int, enough: float) -> Found:
+    """Return a way found at the edge of something turned a little further away from it.
+
+    Args:
+        sense: The range sensor.
+        found: The first free direction of a sweep.
+        side: The way it turned.
+        enough: What counts as free (m).
+    """
+    if found.blocked is None:
+        return found
+    headings = [found.heading + side * ease for ease in EASE]
+    for heading, free in zip(headings, sense(headings).tolist(), strict=True):
+        if free >= min(enough, found.free):
+            return found._replace(heading=heading, free=free)
+    return found
+
+
+def _rays(
+    sense: RangeSensor, start: float, side: int, first: float, step: float, count: int
+) -> Iterator[tuple[float, float]]:
+    """Yield how far the ray is turned and its free distance, casting only as many as are asked."""
+    for begin in range(0, count, AT_ONCE):
+        turns = [first + k * step for k in range(begin, min(begin + AT_ONCE, count))]
+        lengths = sense([start + side * turn for turn in turns]).tolist()
+        yield from zip(turns, lengths, strict=True)
