@@ -51,7 +51,7 @@ def scenario(
         start=Start(position=start),
         goal=Goal(position=goal),
         obstacles=tuple(obstacles),
-        planner=ImprovedFuzzySettings(),
+        planner=ImprovedFuzzySettings(turn_unit=math.radians(45.0)),
         **others,
     )
 

@@ -3,20 +3,39 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
-from typing import Any
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from synthetic import drive, modes, scenario
 
-from fuzzyq_bullet.video.story import READING_TIME, Narrator, reason
+from fuzzyq_bullet import episode
+from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
+from fuzzyq_bullet.scenario import load_scenario
+from fuzzyq_bullet.trajectory import Collision
+from fuzzyq_bullet.video.action import Action
+from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.meaning import Meaning
+from fuzzyq_bullet.video.record import moments
+from fuzzyq_bullet.video.rules import Rules
+from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.senses import Senses
+from fuzzyq_bullet.video.shown import HOLD, Shown
+from fuzzyq_bullet.video.stage import Stage
+from fuzzyq_bullet.video.story import ALIKE, STRAIGHT, is_clear, off_goal_line, reason, struck
 from fuzzyq_bullet.video.timeline import NO_DECISION, Timeline
+from fuzzyq_bullet.video.words import Story
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
 
 
-def said(facing: float = 0.0, *, heading: float = 0.0, mode: int = 0, **columns: Any) -> str:
-    """Return the sentence for one decision of a robot whose goal lies straight to the east."""
-    record = drive(seconds=0.0).decisions
+def told(facing: float = 0.0, *, heading: float = 0.0, mode: int = 0, **columns: Any) -> Trajectory:
+    """Return a record of one decision of a robot whose goal lies straight to the east."""
+    record = drive(seconds=0.0)
     values = {
         "heading": heading,
         "mode": mode,
@@ -24,10 +43,17 @@ def said(facing: float = 0.0, *, heading: float = 0.0, mode: int = 0, **columns:
         "lengths": (1.0, 1.0, 1.0),
         "distance": 5.0,
         "difference": 0.0,
+        "turn": heading / record.scenario.planner.turn_unit,  # type: ignore[attr-defined]
         **columns,
     }
     changed = {name: np.array([value]) for name, value in values.items()}
-    return reason(replace(record, **changed), 0, facing)
+    ticks = replace(record.ticks, heading=np.full_like(record.ticks.heading, facing))
+    return replace(record, ticks=ticks, decisions=replace(record.decisions, **changed))
+
+
+def said(facing: float = 0.0, **columns: Any) -> str:
+    """Return the sentence for one decision."""
+    return reason(told(facing, **columns), 0)
 
 
 def test_a_clear_way() -> None:
@@ -37,12 +63,29 @@ def test_a_clear_way() -> None:
 
 
 def test_the_freer_side_and_both_distances() -> None:
-    blocked = {"lengths": (0.9, 0.3, 0.4), "distance": 1.5, "difference": 2.5}
+    blocked: dict[str, Any] = {"lengths": (0.9, 0.3, 0.4), "distance": 1.5, "difference": 2.5}
     assert said(heading=0.6, **blocked) == "Left is freer (0.9 m against 0.4 m): turns left"
     assert said(0.6, heading=0.6, **blocked).endswith(": keeps left")
     assert said(1.2, heading=0.6, **blocked).endswith(": keeps left, a little less")
-    mirrored = {"lengths": (0.4, 0.3, 0.9), "distance": 1.5, "difference": -2.5}
+    mirrored: dict[str, Any] = {"lengths": (0.4, 0.3, 0.9), "distance": 1.5, "difference": -2.5}
     assert said(heading=-0.6, **mirrored) == "Right is freer (0.9 m against 0.4 m): turns right"
+
+
+def test_the_freer_side_is_the_one_that_measures_more_whatever_the_turn() -> None:
+    blocked: dict[str, Any] = {"lengths": (0.4, 0.3, 1.0), "distance": 1.5, "difference": -3.0}
+    assert said(heading=0.6, **blocked).startswith("Right is freer (1.0 m against 0.4 m), yet")
+    small = said(heading=-0.05, **blocked)
+    assert small.endswith("0.3 m ahead: nearly straight to the goal")
+
+
+def test_a_turn_that_the_guard_holds_back_is_not_called_the_controllers() -> None:
+    assert said(0.8, heading=0.8, turn=0.0) == (
+        "Way is clear, but no room yet to turn so far: brakes first"
+    )
+    blocked: dict[str, Any] = {"lengths": (0.4, 0.3, 1.0), "distance": 1.5, "difference": -3.0}
+    assert "no room yet" in said(heading=0.6, turn=-1.0, **blocked)
+    leaving = said(heading=0.0, turn=-1.0, **blocked)
+    assert leaving == "Line to the goal leads on (0.3 m): straight to the goal"
 
 
 def test_sides_that_round_to_the_same_are_told_more_exactly() -> None:
@@ -52,41 +95,132 @@ def test_sides_that_round_to_the_same_are_told_more_exactly() -> None:
 
 def test_equal_sides() -> None:
     sentence = said(lengths=(0.4, 0.3, 0.4), distance=1.5)
-    assert sentence == "Both sides alike (0.4 m), 0.3 m ahead: straight on, slower"
+    assert sentence == "Both sides alike (0.4 m), 0.3 m ahead: straight to the goal"
 
 
 def test_other_modes_are_named() -> None:
-    assert said(heading=1.0, mode=1) == "Way to the goal is blocked: breaks out to the left"
-    assert said(mode=2) == "Large obstacle in the way: follows its edge"
-    assert said(heading=-1.0, mode=2).endswith("follows its edge, turns right")
+    near: dict[str, Any] = {"lengths": (0.9, 0.1, 0.2), "distance": 0.5, "difference": 3.5}
+    assert said(heading=1.0, mode=1, **near) == "Blocked ahead: breaks out to the left"
+    assert said(heading=-1.0, mode=1).startswith("Comes no nearer: breaks out to the right")
+    x, y = drive(seconds=0.0).ticks.position[0]
+    right, left = (x + 0.1, y - 0.4), (x + 0.1, y + 0.4)
+    assert said(mode=2, target=right) == "Follows the obstacle on its right"
+    assert said(mode=2, target=left) == "Follows the obstacle on its left"
+    assert said(mode=2) == "Follows the obstacle's edge"
+    assert said(mode=2, target=left, step=0.0, reach=0.0) == "Finds no way on: stops"
 
 
 def test_a_planner_that_explains_nothing() -> None:
-    blank = {"lengths": (math.nan,) * 3, "lines": (math.nan,) * 3, "difference": math.nan}
+    blank: dict[str, Any] = {
+        "lengths": (math.nan,) * 3,
+        "lines": (math.nan,) * 3,
+        "difference": math.nan,
+    }
     assert said(**blank) == "Drives straight on"
     assert said(heading=1.0, **blank) == "Turns left"
 
 
-def test_a_sentence_stays_long_enough_to_be_read() -> None:
+@pytest.fixture(scope="module")
+def real() -> Trajectory:
+    return episode.run(load_scenario("boxes"))
+
+
+@pytest.mark.parametrize("speed", [1.0, 4.0])
+def test_in_every_frame_the_sentence_is_true_of_what_the_panels_show(
+    real: Trajectory, speed: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: dict[str, int] = {}
+    for part, place in ((Senses, 1), (Meaning, 1), (Rules, 1), (Action, 2), (Story, 1)):
+
+        def draw(*args: Any, part: Any = part, place: int = place, **_: Any) -> Any:
+            drawn[part.__name__] = args[place]
+            return () if part in (Senses, Meaning, Action) else None
+
+        monkeypatch.setattr(part, "draw", draw)
+    monkeypatch.setattr(Scene, "draw", lambda *_: None)
+    monkeypatch.setattr(Map, "draw", lambda *_: None)
+    story, facts = Story(real), real.decisions
+    with Stage(real, speed) as stage:
+        for moment in moments(Timeline(real), speed):
+            drawn.clear()
+            if not list(stage.patches(moment)) and not drawn:
+                continue  # the closing frame stays
+            assert len(drawn) == 5
+            [decision] = set(drawn.values())
+            sentence = story.sentence(decision, over=moment.over)
+            if real.collision is None or not moment.over:
+                assert sentence == reason(real, decision)
+            _agrees(real, decision, sentence)
+            # Never older than the hold allows.
+            assert decision <= moment.decision
+            if decision < moment.decision:
+                replaced = float(real.ticks.time[facts.tick[decision + 1]])
+                assert moment.time - replaced < HOLD * speed
+
+
+def _agrees(run: Trajectory, decision: int, sentence: str) -> None:
+    """Check a sentence against the numbers that the panels show for a decision."""
+    facts = run.decisions
+    left, ahead, right = facts.lengths[decision].tolist()
+    lean = off_goal_line(facts, decision)
+    side = re.search(r"(Left|Right) is freer \((.+) m against (.+) m\)", sentence)
+    if side:
+        more, less = (left, right) if side[1] == "Left" else (right, left)
+        assert float(side[2]) == pytest.approx(more, abs=0.051)
+        assert float(side[3]) == pytest.approx(less, abs=0.051)
+        assert more - less >= ALIKE
+    kept = re.search(r": (?:turns|keeps) (left|right)(?!, )", sentence)
+    if side and kept:
+        assert (lean > 0.0) == (kept[1] == "left")
+    for number in re.findall(r"([\d.]+) m ahead", sentence):
+        assert float(number) == pytest.approx(ahead, abs=0.051)
+    if "straight to the goal" in sentence:
+        assert abs(lean) < STRAIGHT
+    if MODES[int(facts.mode[decision])] == "routine":
+        assert ("Way is clear" in sentence) <= is_clear(facts, decision)
+    if is_clear(facts, decision):
+        assert not side
+        assert (
+            ahead > 4.9 * STEP_UNIT
+            or ahead
+            >= math.dist(run.ticks.position[facts.tick[decision]], run.scenario.goal.position)
+            - 1e-9
+        )
+
+
+def test_a_decision_stays_long_enough_to_be_read() -> None:
     run = drive(scenario(60, 5, seed=4))
-    timeline, narrator = Timeline(run), Narrator(run.decisions)
-    shown: list[tuple[float, str]] = []
-    for k in range(int(timeline.end * 30)):
-        moment = timeline.at(k / 30)
-        sentence = narrator.tell(moment)
-        if not shown or shown[-1][1] != sentence:
-            shown.append((moment.time, sentence))
-    assert len(shown) > 5
-    gaps = np.diff([time for time, _ in shown])
-    assert gaps.min() >= READING_TIME - 1e-9
+    timeline, shown = Timeline(run), Shown(run)
+    seen = [shown.at(timeline.at(k / 30)) for k in range(int(timeline.end * 30))]
+    changes = np.flatnonzero(np.diff(seen)) + 1
+    assert len(changes) > 5
+    for before, after in pairwise(changes.tolist()):
+        if after - before < HOLD * 30 - 1:
+            old, new = seen[after - 1], seen[after]
+            turned = off_goal_line(run.decisions, old) * off_goal_line(run.decisions, new) < 0
+            assert turned or is_clear(run.decisions, old)
 
 
-def test_a_change_of_mode_is_told_at_once() -> None:
+def test_a_change_of_mode_is_shown_at_once() -> None:
     run = modes(drive(seconds=3.0), (0, 0.5), (1, 0.5))
-    timeline, narrator = Timeline(run), Narrator(run.decisions)
-    change = float(run.ticks.time[run.decisions.tick[np.flatnonzero(run.decisions.mode)[0]]])
-    narrator.tell(timeline.at(change - 0.05))
-    assert "breaks out" in narrator.tell(timeline.at(change))
+    timeline, shown = Timeline(run), Shown(run)
+    first = int(np.flatnonzero(run.decisions.mode)[0])
+    change = float(run.ticks.time[run.decisions.tick[first]])
+    assert shown.at(timeline.at(change - 0.01)) < first
+    assert shown.at(timeline.at(change)) == first
+    assert "breaks out" in reason(run, first)
+
+
+def test_what_was_hit_is_named_by_kind_and_place() -> None:
+    run = drive(scenario(2, 1), seconds=1.0, outcome="timeout")
+    hit = Collision(1.0, (2.0, 4.2), 0, 12.0)
+    x, y = run.scenario.obstacles[0].position
+    assert struck(replace(run, collision=hit)) == f"the cylinder at ({x:.1f}, {y:.1f})"
+    assert struck(replace(run, collision=replace(hit, obstacle=2))).startswith("the box at (")
+    wall = replace(run, collision=replace(hit, obstacle=-1), outcome="collision")
+    assert struck(wall) == "a wall"
+    assert Story(wall).sentence(3, over=True) == "Ran into a wall"
+    assert Story(wall).sentence(3) == reason(wall, 3)
 
 
 def test_pose_between_ticks_takes_the_short_way_round() -> None:

@@ -31,6 +31,7 @@ class Action:
 
     def __init__(self, trajectory: Trajectory) -> None:
         self._decisions = trajectory.decisions
+        self._positions = trajectory.ticks.position
         self._goal = trajectory.scenario.goal.position
         steps = trajectory.decisions.step
         known = steps[np.isfinite(steps)]
@@ -43,15 +44,14 @@ class Action:
         self._card = card
         self._shown: list[object] = []
 
-    def draw(self, moment: Moment) -> list[Patch]:
-        """Return what changed since last time."""
-        index = moment.decision
+    def draw(self, moment: Moment, index: int) -> list[Patch]:
+        """Return what changed since last time: what is, and what decision ``index`` wants."""
         weights = (math.nan, math.nan)
         turn = step = math.nan
         if index != NO_DECISION:
             first, second = self._decisions.weights[index].tolist()
             weights, step = (first, second), float(self._decisions.step[index])
-            turn = round(self._turn(moment), 2)
+            turn = round(self._turn(index), 2)
         away = math.dist(moment.position, self._goal)
         facts = (
             f"{abs(moment.speed):.2f} m/s",
@@ -85,14 +85,14 @@ class Action:
         self._draw_step(image, box, step)
         return Patch(ACTION.x + box[0], ACTION.y + box[1], image)
 
-    def _turn(self, moment: Moment) -> float:
+    def _turn(self, index: int) -> float:
         """Return the decided turn (rad) away from the middle line, else from the goal."""
-        lean = off_goal_line(self._decisions, moment.decision)
+        lean = off_goal_line(self._decisions, index)
         if math.isfinite(lean):
             return lean
-        (x, y), (goal_x, goal_y) = moment.position, self._goal
+        (x, y), (goal_x, goal_y) = self._positions[int(self._decisions.tick[index])], self._goal
         bearing = math.atan2(goal_y - y, goal_x - x)
-        return math.remainder(float(self._decisions.heading[moment.decision]) - bearing, math.tau)
+        return math.remainder(float(self._decisions.heading[index]) - bearing, math.tau)
 
     def _draw_step(self, image: Image.Image, box: paint.Box, step: float) -> None:
         left, top, right, bottom = _BAR

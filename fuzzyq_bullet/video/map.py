@@ -43,6 +43,7 @@ class Map:
         self._area = (x0, y0, x1, y1)
         positions = trajectory.ticks.position
         self._trail = paint.Trail(self._background(trajectory), positions, self.spot)
+        self._struck = self._outline_struck(trajectory)
         self._steady = Steady(self._scale)
         self._sensed: Sensed | None = None
         self._changed: paint.Box | None = (0, 0, *MAP.size)
@@ -74,6 +75,8 @@ class Map:
             parts.append(paint.box_around(target, 12, MAP.size))
         if hit is not None:
             parts.append(paint.box_around(self.spot([hit]), 20, MAP.size))
+            if len(self._struck):
+                parts.append(paint.box_around(self._struck, 6, MAP.size))
         now = paint.joined(parts)
         box = paint.joined([now, self._changed, grown])
         self._changed = now
@@ -87,6 +90,8 @@ class Map:
             diamond(image, box, target, 8.0)
         _robot(image, box, centre, -moment.heading, radius)
         if hit is not None:
+            if len(self._struck):
+                _draw_ring(image, box, self._struck)
             cross(image, box, self.spot([hit])[0], 10.0)
         return Patch(MAP.x + box[0], MAP.y + box[1], image)
 
@@ -95,6 +100,17 @@ class Map:
         way = np.array((math.cos(heading), math.sin(heading)))
         ends = [sensed.origin + way * sensed.radius, sensed.origin + way * (sensed.radius + length)]
         return self.spot(ends)
+
+    def _outline_struck(self, trajectory: Trajectory) -> Floats:
+        """Return the outline (pixels) of the obstacle that the robot collided with, if any."""
+        hit = trajectory.collision
+        if hit is None or hit.obstacle < 0:
+            return np.empty((0, 2))
+        obstacle = trajectory.scenario.obstacles[hit.obstacle]
+        x0, y0, x1, y1 = self._area
+        seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+        outline = footprint(obstacle, corners_for(extent(obstacle) * self._scale))
+        return self.spot(clipped(outline, seen))
 
     def _background(self, trajectory: Trajectory) -> Image.Image:
         image = paint.card(MAP)
@@ -159,6 +175,15 @@ def _draw_line(image: Image.Image, box: paint.Box, stroke: Floats, colour: style
         paint.polyline(pen, at(stroke), 255, _LINE * at.factor)
 
     paint.stamp(image, box, stroke, _LINE, colour, draw)
+
+
+def _draw_ring(image: Image.Image, box: paint.Box, outline: Floats) -> None:
+    """Mark the obstacle that was hit."""
+
+    def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        paint.polyline(pen, at([*outline, outline[0]]), 255, 3.0 * at.factor)
+
+    paint.stamp(image, box, outline, 4, style.DANGER, draw)
 
 
 def _robot(

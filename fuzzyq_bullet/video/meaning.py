@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video.story import is_clear
 from fuzzyq_bullet.video.style import MEANING
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
@@ -89,26 +90,32 @@ class Sets:
             self._box[3] - 1 - membership * (self._box[3] - self._box[1] - 4),
         )
 
-    def draw(self, value: float, memberships: Floats) -> Image.Image | None:
-        """Return the plot with value and memberships marked, None if it looks as last time."""
+    def draw(self, value: float, memberships: Floats, said: str = "") -> Image.Image | None:
+        """Return the plot with value and memberships marked, None if it looks as last time.
+
+        Args:
+            value: The value.
+            memberships: What it belongs to, and how much.
+            said: What to call it instead of what it belongs to most.
+        """
         known = math.isfinite(value) and bool(np.isfinite(memberships).all())
         # Finer differences cannot be seen.
         levels = [
             round(one * _LEVELS) for one in np.clip(np.nan_to_num(memberships), 0, 1).tolist()
         ]
         x = round(self._at(value, 0.0)[0]) if known else None
-        if (x, *levels) == self._shown:
+        strongest = int(np.argmax(memberships)) if known else -1
+        text = (said or self._words[strongest]) if known else "–"
+        if (x, text, *levels) == self._shown:
             return None
-        self._shown = (x, *levels)
+        self._shown = (x, text, *levels)
 
         image = self._blank.copy()
         origin = self._inside(*self._box[:2])
-        strongest = int(np.argmax(memberships)) if known else -1
         for area, curve, level in zip(self._areas, self._curves, levels, strict=True):
             if level:
                 image.paste(style.HEAT, origin, area.point(_DIMMED[level]))
                 image.paste(style.mixed(style.FAINT, style.TEXT, level / _LEVELS), origin, curve)
-        text = self._words[strongest] if known else "–"
         paint.write(image, (_LEFT + _WIDTH, 16), text, style.TEXT, 17, bold=True, align="r")
         self._write_labels(image, levels, strongest)
         if x is not None:
@@ -154,15 +161,14 @@ class Meaning:
         patches = [Patch(MEANING.x, MEANING.y, self._card)] if self._decision is None else []
         self._decision = decision
         d, blank = self._decisions, np.full(5, np.nan)
-        known = decision != NO_DECISION
-        plots = (
-            (self._near, self._near.draw(float(d.distance[decision]), d.near[decision]))
-            if known
-            else (self._near, self._near.draw(math.nan, blank)),
-            (self._side, self._side.draw(float(d.difference[decision]), d.side[decision]))
-            if known
-            else (self._side, self._side.draw(math.nan, blank)),
-        )
+        if decision == NO_DECISION:
+            near, side = self._near.draw(math.nan, blank), self._side.draw(math.nan, blank)
+        else:
+            # With a clear way to the goal the planner does not look aside: Df is simply 0.
+            said = ("way is clear", "not asked") if is_clear(d, decision) else ("", "")
+            near = self._near.draw(float(d.distance[decision]), d.near[decision], said[0])
+            side = self._side.draw(float(d.difference[decision]), d.side[decision], said[1])
+        plots = ((self._near, near), (self._side, side))
         for plot, image in plots:
             if image is not None:
                 patches.append(Patch(MEANING.x, MEANING.y + plot.top, image))

@@ -93,7 +93,6 @@ def frame(trajectory: Trajectory, time: float) -> Image.Image:
     moment = timeline.at(time)
     image = Image.new("RGB", (WIDTH, HEIGHT), PAGE)
     with Stage(trajectory) as stage:
-        stage.watch(moment)
         if time > timeline.end:
             moment = closing(moment)
         for patch in stage.patches(moment):

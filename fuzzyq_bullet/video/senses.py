@@ -12,11 +12,11 @@ from PIL import Image, ImageDraw
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.film import Patch
 from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, corridor, extent, footprint
-from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed, sensor_range
+from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed, sensed_at, sensor_range
 from fuzzyq_bullet.video.solids import walls_of
-from fuzzyq_bullet.video.story import ALIKE
+from fuzzyq_bullet.video.story import is_clear
 from fuzzyq_bullet.video.style import SENSES
-from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Steady
+from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,7 +29,7 @@ _LENS: paint.Box = (8, 28, 182, 202)
 _DIAMETER = _LENS[2] - _LENS[0]
 _FACTOR = 2
 _COLUMN: paint.Box = (192, 26, 314, 208)
-_ROW = 44
+_ROW = 38
 _NAMES = ("left", "ahead", "right")
 _MOST = 400
 """Obstacles drawn in the close-up at most: the nearest."""
@@ -41,6 +41,7 @@ class Senses:
     """Panel 1 of one run."""
 
     def __init__(self, trajectory: Trajectory) -> None:
+        self._trajectory = trajectory
         self._decisions = trajectory.decisions
         self._range = sensor_range(trajectory)
         self._view = self._range + ROBOT_RADIUS + 0.1
@@ -58,36 +59,39 @@ class Senses:
             (0, 0, _DIAMETER, _DIAMETER),
             lambda pen, at: pen.ellipse((0, 0, _DIAMETER * at.factor, _DIAMETER * at.factor), 255),
         )
-        self._steady = Steady(self._scale / _FACTOR)
         self._decision: int | None = None
 
-    def draw(self, moment: Moment, sensed: Sensed | None) -> list[Patch]:
-        """Return what changed since the last moment drawn."""
-        patches: list[Patch] = []
-        fresh = moment.decision != self._decision
-        if not self._steady.moved(moment) and not fresh:
-            return patches
-        if fresh:
-            column = self._blank.copy()
-            self._write_numbers(column, moment.decision)
-            self._image.paste(column, _COLUMN[:2])
-            if self._decision is None:
-                patches.append(Patch(SENSES.x, SENSES.y, self._image))
-            else:
-                patches.append(Patch(SENSES.x + _COLUMN[0], SENSES.y + _COLUMN[1], column))
-            self._decision = moment.decision
-        view = Image.new("RGB", (_DIAMETER, _DIAMETER), style.CARD)
-        view.paste(self._close_up(moment, sensed).reduce(_FACTOR), mask=self._round)
-        patches.append(Patch(SENSES.x + _LENS[0], SENSES.y + _LENS[1], view))
-        return patches
+    def draw(self, decision: int) -> list[Patch]:
+        """Return what changed since the last decision drawn.
 
-    def _close_up(self, moment: Moment, sensed: Sensed | None) -> Image.Image:
+        It shows the instant of the decision: what its numbers were measured at.
+        """
+        if decision == self._decision:
+            return []
+        column = self._blank.copy()
+        self._write_numbers(column, decision)
+        self._image.paste(column, _COLUMN[:2])
+        view = Image.new("RGB", (_DIAMETER, _DIAMETER), style.CARD)
+        view.paste(self._close_up(decision).reduce(_FACTOR), mask=self._round)
+        self._image.paste(view, _LENS[:2])
+        fresh, self._decision = self._decision is None, decision
+        if fresh:
+            return [Patch(SENSES.x, SENSES.y, self._image)]
+        return [
+            Patch(SENSES.x + _COLUMN[0], SENSES.y + _COLUMN[1], column),
+            Patch(SENSES.x + _LENS[0], SENSES.y + _LENS[1], view),
+        ]
+
+    def _close_up(self, decision: int) -> Image.Image:
+        sensed: Sensed | None = sensed_at(self._trajectory, decision)
+        tick = 0 if decision == NO_DECISION else int(self._decisions.tick[decision])
+        here = self._trajectory.ticks.position[tick]
+        facing = float(self._trajectory.ticks.heading[tick])
         side = _DIAMETER * _FACTOR
         image = Image.new("RGB", (side, side), style.GROUND)
         pen = ImageDraw.Draw(image, "RGBA")
-        here = np.array(moment.position)
         # The robot's nose, its x axis, points up in the picture, its left to the left.
-        cos, sin = math.cos(moment.heading), math.sin(moment.heading)
+        cos, sin = math.cos(facing), math.sin(facing)
         turn = np.array([(sin, -cos), (-cos, -sin)]) * self._scale
 
         def at(points: Floats) -> list[tuple[float, float]]:
@@ -141,20 +145,24 @@ class Senses:
             zip(_NAMES, style.LINES, lengths, strict=True)
         ):
             top = 2 + _ROW * row
-            pen.rectangle((0, top, 5, top + 36), colour)
+            pen.rectangle((0, top, 5, top + 33), colour)
             free = math.isfinite(length) and length >= self._range - 1e-9
             label = f"{name}, free" if free else name
             paint.write(image, (14, top + 12), label, style.MUTED, 16)
             value = f"{length:.2f} m" if math.isfinite(length) else "–"
-            paint.write(image, (14, top + 36), value, style.TEXT, 24, bold=True)
-        difference = math.nan if index == NO_DECISION else float(self._decisions.difference[index])
-        value = f"Df {difference + 0.0:+.1f}" if math.isfinite(difference) else "Df –"
+            paint.write(image, (14, top + 33), value, style.TEXT, 22, bold=True)
         top = 2 + _ROW * 3
-        # A planner with a clear way to the goal does not look aside: it calls the sides alike.
-        clear = difference == 0.0 and abs(lengths[0] - lengths[2]) > ALIKE
-        label = "way is clear:" if clear else "left − right"
-        paint.write(image, (14, top + 12), label, style.MUTED, 16)
-        paint.write(image, (14, top + 36), value.replace("-", "−"), style.TEXT, 23, bold=True)
+        paint.write(image, (14, top + 12), "left − right", style.MUTED, 16)
+        difference = math.nan if index == NO_DECISION else float(self._decisions.difference[index])
+        value, told = "–", "Df –"
+        if math.isfinite(difference):
+            # A planner with a clear way to the goal does not look aside: it takes Df as 0.
+            asked = not is_clear(self._decisions, index)
+            value = f"{lengths[0] - lengths[2] + 0.0:+.2f} m" if asked else "not asked"
+            told = f"Df {difference + 0.0:+.1f}" if asked else "Df 0"
+        for down, text, size in ((34, value, 21), (57, told, 21)):
+            text, size = style.fitting(text.replace("-", "−"), 108, (size, 19, 17), bold=True)
+            paint.write(image, (14, top + down), text, style.TEXT, size, bold=True)
 
 
 def _fill(

@@ -32,7 +32,7 @@ class Sensed:
         corridors: What the front half of the disc sweeps along each line (m), shape (N, 2) each.
         radius: Radius of the disc that the lengths are meant for (m).
         heading: The heading decided (rad).
-        target: The planner's temporary target (m), or None.
+        target: The planner's temporary target (m); None without one, or beyond the walls.
     """
 
     origin: tuple[float, float]
@@ -52,6 +52,10 @@ def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
     headings, lengths = decisions.lines[decision].tolist(), decisions.lengths[decision].tolist()
     known = all(map(math.isfinite, (*headings, *lengths)))
     target_x, target_y = decisions.target[decision].tolist()
+    arena = trajectory.scenario.arena
+    aimed = math.isfinite(target_x + target_y)
+    inside = 0.0 <= target_x <= arena.size[0] and 0.0 <= target_y <= arena.size[1]
+    aimed = aimed and (inside or not arena.walls)
     lines = tuple(zip(headings, lengths, strict=True)) if known else ()
     return Sensed(
         origin=(x, y),
@@ -59,7 +63,7 @@ def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
         corridors=tuple(corridor((x, y), *line, ROBOT_RADIUS) for line in lines),
         radius=ROBOT_RADIUS,
         heading=float(decisions.heading[decision]),
-        target=(target_x, target_y) if math.isfinite(target_x + target_y) else None,
+        target=(target_x, target_y) if aimed else None,
     )
 
 

@@ -14,6 +14,7 @@ from fuzzyq_bullet.video.rules import Rules
 from fuzzyq_bullet.video.scene import Scene
 from fuzzyq_bullet.video.senses import Senses
 from fuzzyq_bullet.video.sensing import Sensed, sensed_at
+from fuzzyq_bullet.video.shown import Shown
 from fuzzyq_bullet.video.style import SCENE
 from fuzzyq_bullet.video.words import Clock, Story, caption, outcome_card
 
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 class Stage:
     """All views of one run. Use as a context: the scene holds a renderer.
+
+    Scene and map are live. The four panels and the sentence show one decision, the same one.
 
     Args:
         trajectory: The run.
@@ -45,7 +48,8 @@ class Stage:
         self._rules = Rules(decisions, base, turn_unit)
         self._action = Action(trajectory)
         self._clock = Clock(speed)
-        self._story = Story(trajectory, speed)
+        self._story = Story(trajectory)
+        self._shown = Shown(trajectory, speed)
         self._fresh = True
         self._decision: int | None = None
         self._sensed: Sensed | None = None
@@ -58,10 +62,6 @@ class Stage:
     def __exit__(self, *_: object) -> None:
         self._scene.close()
 
-    def watch(self, moment: Moment) -> None:
-        """Let a moment pass without drawing it, so that the reason told later is the same."""
-        self._story.pass_by(moment)
-
     def patches(self, moment: Moment) -> Iterator[Patch]:
         """Yield what changed since the last moment; all of the frame, the first time."""
         if self._over and moment.over:
@@ -72,19 +72,19 @@ class Stage:
         if moment.decision != self._decision:
             self._decision = moment.decision
             self._sensed = sensed_at(self._trajectory, moment.decision)
-        sensed = self._sensed
+        sensed, shown = self._sensed, self._shown.at(moment)
         hit = (
             self._trajectory.collision.point if moment.over and self._trajectory.collision else None
         )
         for patch in (
             self._scene.draw(moment, sensed, hit),
             self._map.draw(moment, sensed, hit),
-            *self._senses.draw(moment, sensed),
-            *self._meaning.draw(moment.decision),
-            self._rules.draw(moment.decision),
-            *self._action.draw(moment),
+            *self._senses.draw(shown),
+            *self._meaning.draw(shown),
+            self._rules.draw(shown),
+            *self._action.draw(moment, shown),
             self._clock.draw(moment),
-            self._story.draw(moment),
+            self._story.draw(shown, over=moment.over),
         ):
             if patch is not None:
                 yield patch

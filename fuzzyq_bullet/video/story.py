@@ -1,95 +1,65 @@
-"""Why the robot turns, in one plain sentence that stays long enough to be read."""
+"""Why the robot turns, in one plain sentence that is true of the numbers beside it."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.planning.base import MODES, Mode
-from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
+from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
+from fuzzyq_bullet.scenario.models import Cylinder
+from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Decisions
+    from fuzzyq_bullet.trajectory import Decisions, Trajectory
 
-READING_TIME = 0.9
-"""Least time that a sentence stays (s of video), unless the mode of the planner changes."""
 STRAIGHT = math.radians(5.0)
 """A smaller turn is called straight on (rad)."""
 ALIKE = 0.03
 """Sides whose lengths differ by less are called alike (m)."""
+_HELD_BACK = math.radians(2.0)
+"""A heading that differs by more from the controller's (rad) is not the controller's."""
+_STANDS = 1e-6
+"""A shorter step (m) is none."""
+_MOST_ROOM = 5.0 - 1e-9
+"""d, in steps, where nothing was met."""
 
 
-class Narrator:
-    """Chooses the sentence for each moment; moments must come in order of time.
-
-    Args:
-        decisions: What the planner decided.
-        speed: Seconds of the run in one second of video.
-    """
-
-    def __init__(self, decisions: Decisions, speed: float = 1.0) -> None:
-        self._decisions = decisions
-        self._patience = READING_TIME * speed
-        self._since = -math.inf
-        self._decision = NO_DECISION
-        self._mode: Mode | None = None
-        self._sentence = "Waits for its first decision"
-
-    def tell(self, moment: Moment) -> str:
-        """Return the sentence to show."""
-        if moment.decision in (NO_DECISION, self._decision):
-            return self._sentence
-        mode = MODES[int(self._decisions.mode[moment.decision])]
-        if mode != self._mode or moment.time - self._since >= self._patience:
-            sentence = reason(self._decisions, moment.decision, moment.heading)
-            if sentence != self._sentence:
-                self._since = moment.time
-            self._sentence, self._mode, self._decision = sentence, mode, moment.decision
-        return self._sentence
-
-
-def reason(decisions: Decisions, index: int, facing: float) -> str:
-    """Return why decision ``index`` turns a robot that faces ``facing`` (rad) as it does."""
-    turn = math.remainder(float(decisions.heading[index]) - facing, math.tau)
-    side = "left" if turn > 0.0 else "right"
+def reason(trajectory: Trajectory, index: int) -> str:
+    """Return why decision ``index`` turns the robot as it does."""
+    if index == NO_DECISION:
+        return "Waits for its first decision"
+    decisions = trajectory.decisions
     mode = MODES[int(decisions.mode[index])]
-    left, ahead, right = decisions.lengths[index].tolist()
-    known = all(map(math.isfinite, (left, ahead, right)))
-
     if mode == "breakout":
-        if abs(turn) < STRAIGHT:
-            return "Way to the goal is blocked: breaks out straight ahead"
-        return f"Way to the goal is blocked: breaks out to the {side}"
+        return _breaks_out(decisions, index, _turn(trajectory, index))
     if mode == "following":
-        along = "" if abs(turn) < STRAIGHT else f", turns {side}"
-        return f"Large obstacle in the way: follows its edge{along}"
-    if not known:
-        if abs(turn) < STRAIGHT:
-            return "Drives straight on"
-        return f"Turns {side}"
+        if float(decisions.step[index]) < _STANDS and float(decisions.reach[index]) < _STANDS:
+            return "Finds no way on: stops"
+        side = side_of(trajectory, index)
+        if side == 0:
+            return "Follows the obstacle's edge"
+        return f"Follows the obstacle on its {'right' if side > 0 else 'left'}"
+    return _steers(trajectory, index)
 
+
+def side_of(trajectory: Trajectory, index: int) -> int:
+    """Return which way a decision leads: 1 to the left, −1 to the right, 0 neither.
+
+    It is the side of the line to the goal or, where a boundary is followed, the side away from it.
+    """
+    decisions = trajectory.decisions
+    if MODES[int(decisions.mode[index])] == "following":
+        x, y = trajectory.ticks.position[int(decisions.tick[index])].tolist()
+        target_x, target_y = decisions.target[index].tolist()
+        if not math.isfinite(target_x + target_y):
+            return 0
+        bearing = math.atan2(target_y - y, target_x - x)
+        aside = math.remainder(bearing - float(decisions.heading[index]), math.tau)
+        return 1 if aside < 0.0 else -1
     lean = off_goal_line(decisions, index)
-    if not math.isfinite(lean) or abs(lean) < STRAIGHT:
-        difference = float(decisions.difference[index])
-        free = (
-            math.isfinite(difference) and abs(difference) < 1e-9 and _is_longest(decisions, index)
-        )
-        if free:
-            return "Way is clear: " + _to_goal(turn)
-        if abs(left - right) < ALIKE:
-            return f"Both sides alike ({left:.1f} m), {ahead:.1f} m ahead: straight on, slower"
-        return f"Hardly any difference of the sides, {ahead:.1f} m ahead: " + _to_goal(turn)
-
-    freer, room, other = ("left", left, right) if lean > 0.0 else ("right", right, left)
-    digits = 1 if f"{room:.1f}" != f"{other:.1f}" else 2
-    because = f"{freer.capitalize()} is freer ({room:.{digits}f} m against {other:.{digits}f} m)"
-    if abs(room - other) < ALIKE:
-        because = f"Blocked {ahead:.1f} m ahead"
-    if abs(turn) < STRAIGHT:
-        return f"{because}: keeps {freer}"
-    if side == freer:
-        return f"{because}: turns {freer}"
-    return f"{because}: keeps {freer}, a little less"
+    if not math.isfinite(lean):
+        lean = _turn(trajectory, index)
+    return 0 if abs(lean) < STRAIGHT else (1 if lean > 0.0 else -1)
 
 
 def off_goal_line(decisions: Decisions, index: int) -> float:
@@ -99,12 +69,104 @@ def off_goal_line(decisions: Decisions, index: int) -> float:
     )
 
 
-def _to_goal(turn: float) -> str:
+def is_clear(decisions: Decisions, index: int) -> bool:
+    """Whether nothing stood between robot and goal, so that the controller heard of no sides."""
+    return float(decisions.difference[index]) == 0.0 and (
+        float(decisions.distance[index]) >= _MOST_ROOM
+    )
+
+
+def struck(trajectory: Trajectory) -> str:
+    """Return what the robot collided with, by kind and place; empty if it did not."""
+    hit = trajectory.collision
+    if hit is None:
+        return ""
+    if hit.obstacle < 0:
+        return "a wall"
+    obstacle = trajectory.scenario.obstacles[hit.obstacle]
+    kind = "cylinder" if isinstance(obstacle, Cylinder) else "box"
+    x, y = (round(v, 1) + 0.0 for v in obstacle.position)
+    return f"the {kind} at ({x:.1f}, {y:.1f})".replace("-", "−")
+
+
+def _turn(trajectory: Trajectory, index: int) -> float:
+    """Return by how much (rad) a decision turns the robot from where it faced."""
+    decisions = trajectory.decisions
+    facing = float(trajectory.ticks.heading[int(decisions.tick[index])])
+    return math.remainder(float(decisions.heading[index]) - facing, math.tau)
+
+
+def _breaks_out(decisions: Decisions, index: int, turn: float) -> str:
+    ahead = float(decisions.lengths[index, 1])
+    lean = off_goal_line(decisions, index)
+    way = lean if math.isfinite(lean) else turn
+    side = "straight ahead" if abs(way) < STRAIGHT else "to the " + _side(way)
+    near = not math.isfinite(ahead) or ahead < STEP_UNIT
+    return f"{'Blocked ahead' if near else 'Comes no nearer'}: breaks out {side}"
+
+
+def _steers(trajectory: Trajectory, index: int) -> str:
+    """Return why the routine part turns as it does."""
+    decisions = trajectory.decisions
+    turn = _turn(trajectory, index)
+    left, ahead, right = decisions.lengths[index].tolist()
+    lean = off_goal_line(decisions, index)
+    if not all(map(math.isfinite, (left, ahead, right, lean))):
+        return "Drives straight on" if abs(turn) < STRAIGHT else f"Turns {_side(turn)}"
+
+    clear = is_clear(decisions, index)
+    wanted = _wanted(trajectory, index)
+    if abs(math.remainder(lean - wanted, math.tau)) > _HELD_BACK:
+        if abs(lean) < 1e-6:  # the way out that has been promised is taken, whatever the sides
+            return f"Line to the goal leads on ({ahead:.1f} m): {_to_goal(turn)}"
+        because = "Way is clear" if clear else f"{ahead:.1f} m ahead"
+        return f"{because}, but no room yet to turn so far: brakes first"
+    if clear:
+        return "Way is clear: " + _to_goal(turn)
+
+    if abs(left - right) < ALIKE:
+        if abs(lean) >= STRAIGHT:
+            return f"Blocked {ahead:.1f} m ahead: {_bends(turn, lean)}"
+        return f"Both sides alike ({_both(left, right)}), {ahead:.1f} m ahead: {_to_goal(turn)}"
+    freer, room, other = ("left", left, right) if left > right else ("right", right, left)
+    digits = 1 if f"{room:.1f}" != f"{other:.1f}" else 2
+    because = f"{freer.capitalize()} is freer ({room:.{digits}f} m against {other:.{digits}f} m)"
+    if abs(lean) < STRAIGHT:
+        return f"{because}, {ahead:.1f} m ahead: {_to_goal(turn, nearly=True)}"
+    if _side(lean) != freer:
+        return f"{because}, yet the rules lead {_side(lean)}"
+    return f"{because}: {_bends(turn, lean)}"
+
+
+def _wanted(trajectory: Trajectory, index: int) -> float:
+    """Return the controller's turn off the line to the goal (rad), of Eqs. 15 to 17."""
+    decisions = trajectory.decisions
+    unit = getattr(trajectory.scenario.planner, "turn_unit", None)
+    turn = float(decisions.turn[index] * decisions.weights[index, 1])
+    if unit is None or not math.isfinite(turn):
+        return off_goal_line(decisions, index)
+    return turn * float(unit)
+
+
+def _bends(turn: float, lean: float) -> str:
+    """Say what becomes of the robot's direction when it is to lie on one side of the goal line."""
     if abs(turn) < STRAIGHT:
-        return "straight to the goal"
-    return f"turns {'left' if turn > 0.0 else 'right'}, to the goal"
+        return f"keeps {_side(lean)}"
+    return f"turns {_side(lean)}" if turn * lean > 0.0 else f"keeps {_side(lean)}, a little less"
 
 
-def _is_longest(decisions: Decisions, index: int) -> bool:
-    """Whether the controller was told that nothing is near (d at its greatest)."""
-    return float(decisions.distance[index]) >= 4.5
+def _both(left: float, right: float) -> str:
+    if f"{left:.1f}" == f"{right:.1f}":
+        return f"{left:.1f} m"
+    return f"{left:.2f} m and {right:.2f} m"
+
+
+def _to_goal(turn: float, *, nearly: bool = False) -> str:
+    about = "nearly " if nearly else ""
+    if abs(turn) < STRAIGHT:
+        return f"{about}straight to the goal"
+    return f"turns {_side(turn)}, {about}to the goal"
+
+
+def _side(turn: float) -> str:
+    return "left" if turn > 0.0 else "right"

@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw
 from fuzzyq_bullet.planning.base import MODES
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.film import Patch
-from fuzzyq_bullet.video.story import Narrator
+from fuzzyq_bullet.video.story import reason, struck
 from fuzzyq_bullet.video.style import HEADER, SCENE, STORY, Rect
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
@@ -77,20 +77,20 @@ class Clock:
 class Story:
     """The mode of the planner and the reason for its decision, in large letters."""
 
-    def __init__(self, trajectory: Trajectory, speed: float) -> None:
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._trajectory = trajectory
         self._mode = trajectory.decisions.mode
-        self._narrator = Narrator(trajectory.decisions, speed)
         self._card = paint.card(STORY)
+        self._decision: tuple[int, bool] | None = None
         self._shown: tuple[str, str] | None = None
 
-    def pass_by(self, moment: Moment) -> None:
-        """Take note of a moment that is not drawn."""
-        self._narrator.tell(moment)
-
-    def draw(self, moment: Moment) -> Patch | None:
+    def draw(self, decision: int, *, over: bool = False) -> Patch | None:
         """Return the strip if it says something else than last."""
-        sentence = self._narrator.tell(moment)
-        mode = "" if moment.decision == NO_DECISION else MODES[int(self._mode[moment.decision])]
+        if (decision, over) == self._decision:
+            return None
+        self._decision = (decision, over)
+        sentence = self.sentence(decision, over=over)
+        mode = "" if decision == NO_DECISION else MODES[int(self._mode[decision])]
         if (mode, sentence) == self._shown:
             return None
         self._shown = (mode, sentence)
@@ -109,6 +109,12 @@ class Story:
         paint.write(image, (_BADGE + 18, y), text, style.TEXT, size, bold=True)
         return Patch(STORY.x, STORY.y, image)
 
+    def sentence(self, decision: int, *, over: bool = False) -> str:
+        """Return what is said of a decision; after a collision, what the robot ran into."""
+        if over and self._trajectory.collision is not None:
+            return f"Ran into {struck(self._trajectory)}"
+        return reason(self._trajectory, decision)
+
 
 def outcome_lines(trajectory: Trajectory) -> tuple[str, str]:
     """Return how the run ended, as a title and the figures to it."""
@@ -116,8 +122,7 @@ def outcome_lines(trajectory: Trajectory) -> tuple[str, str]:
     title, _ = _OUTCOMES[trajectory.outcome]
     hit = trajectory.collision
     if hit is not None:
-        what = "a wall" if hit.obstacle < 0 else f"obstacle {hit.obstacle}"
-        title = f"{title} with {what}"
+        title = f"{title} with {struck(trajectory)}"
     moves = ticks.position[1:] - ticks.position[:-1]
     length = float(np.hypot(moves[:, 0], moves[:, 1]).sum())
     facts = [f"{'at' if hit else 'in'} {float(ticks.time[-1]):.1f} s", f"path {length:.1f} m"]
