@@ -5,18 +5,23 @@ from __future__ import annotations
 import json
 import os
 import pty
+import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
+import pytest
 import yaml
 from conftest import FUZZYQ, Call
 from typer.testing import CliRunner
 
 from fuzzyq_bullet import __version__
 from fuzzyq_bullet.cli.app import app
+from fuzzyq_bullet.cli.run import touched
+from fuzzyq_bullet.trajectory import Collision, Trajectory
 
 RESULT_KEYS = [
     "scenario",
@@ -84,8 +89,72 @@ def test_a_replay_lies_beside_its_record_and_may_be_quicker(
 ) -> None:
     shutil.copy(filmed / "short.npz", tmp_path)
     done = fuzzyq("replay", "short.npz", "--speed", "8", cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (0, "short.mp4\n"), done.stderr
-    assert (tmp_path / "short.mp4").stat().st_size < (filmed / "short.mp4").stat().st_size
+    assert (done.returncode, done.stdout) == (0, "short-8x.mp4\n"), done.stderr
+    assert (tmp_path / "short-8x.mp4").stat().st_size < (filmed / "short.mp4").stat().st_size
+
+
+def test_a_film_at_another_speed_replaces_none(
+    fuzzyq: Call, short: Path, filmed: Path, tmp_path: Path
+) -> None:
+    shutil.copy(filmed / "short.npz", tmp_path)
+    (tmp_path / "short.mp4").write_bytes(b"the film in real time")
+    for args in (("replay", tmp_path / "short.npz"), ("run", short, "--out", tmp_path)):
+        assert fuzzyq(*args, "--speed", "20").returncode == 0
+        assert (tmp_path / "short.mp4").read_bytes() == b"the film in real time"
+        assert (tmp_path / "short-20x.mp4").read_bytes()[4:8] == b"ftyp"
+        (tmp_path / "short-20x.mp4").unlink()
+
+
+def test_a_film_of_an_earlier_run_is_kept_and_said_to_be_that(
+    fuzzyq: Call, short: Path, tmp_path: Path
+) -> None:
+    older = [tmp_path / name for name in ("short-4x.mp4", "short.mp4")]
+    for path in (*older, tmp_path / "shorter.mp4", tmp_path / "short-cut.mp4"):
+        path.write_bytes(b"an older one")
+    done = fuzzyq("run", short, "--no-video", "--out", tmp_path)
+    said = [line for line in done.stderr.splitlines() if "of an earlier run" in line]
+    assert said == [f"{path} is of an earlier run" for path in older]
+    assert all(path.read_bytes() == b"an older one" for path in older)
+
+
+CRASH = """\
+name: crash
+arena: {size: [4.0, 4.0]}
+start: {position: [2.0, 2.0]}
+goal: {position: [3.5, 2.0]}
+planner: {name: fuzzy, weights: [2.0, 2.0]}
+obstacles:
+  - {shape: cylinder, position: [3.5, 3.5], radius: 0.1}
+  - {shape: box, position: [2.6, 1.6], size: [0.4, 1.2]}
+"""
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_a_collision_says_what_was_touched_where_and_when(
+    drive: str, fuzzyq: Call, tmp_path: Path
+) -> None:
+    (tmp_path / "crash.yaml").write_text(CRASH)
+    done = fuzzyq("run", "crash.yaml", "--drive", drive, "--no-video", cwd=tmp_path)
+    assert done.returncode == 1
+    summary, contact, *_ = done.stderr.splitlines()
+    assert "least clearance 0.000 m" in summary
+    place = r"\(2\.\d\d, \d\.\d\d\) after \d+\.\d s"
+    assert re.fullmatch(rf"touched the box obstacles\[1\] at {place}", contact)
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "listed", "what"),
+    [
+        (1, 2, "touched the box obstacles[1] at (0.00, 2.50) after 9.3 s"),
+        (0, 0, "touched the cylinder obstacles[0] (drawn) at (0.00, 2.50) after 9.3 s"),
+        (-1, 2, "touched a wall at (0.00, 2.50) after 9.3 s"),
+    ],
+)
+def test_what_was_touched_is_named(obstacle: int, listed: int, what: str, filmed: Path) -> None:
+    record = Trajectory.load(filmed / "short.npz")
+    collision = Collision(time=9.31, point=(-1e-9, 2.5), obstacle=obstacle, normal_force=1.0)
+    assert touched(replace(record, collision=collision), listed) == what
+    assert touched(record, listed) == ""
 
 
 def test_options_take_the_place_of_what_the_scenario_says(
@@ -225,7 +294,9 @@ def test_a_progress_bar_is_shown_on_a_terminal_and_gone_at_the_end(
 
 
 def test_every_command_explains_itself() -> None:
-    for name in ("run", "replay", "validate", "schema", "list", "explain", "figure", "bench speed"):
+    commands = "run", "replay", "validate", "schema", "list", "explain", "figure", "bench speed"
+    for name in commands:
         shown = CliRunner().invoke(app, [*name.split(), "--help"], prog_name="fuzzyq").stdout
         assert f"Usage: fuzzyq {name}" in shown
         assert "--help" in shown
+        assert not re.search("Raises|Args:|UserError", shown)

@@ -86,7 +86,7 @@ def test_while_driving(signum: signal.Signals, long: Path, tmp_path: Path) -> No
 
 @BOTH
 def test_while_filming(signum: signal.Signals, filmed: Path, tmp_path: Path) -> None:
-    record, video = tmp_path / "short.npz", tmp_path / "short.mp4"
+    record, video = tmp_path / "short.npz", tmp_path / "short-0.1x.mp4"
     record.write_bytes((filmed / "short.npz").read_bytes())
     video.write_bytes(OLD)
     process = start("replay", record, "--speed", "0.1")
@@ -97,7 +97,7 @@ def test_while_filming(signum: signal.Signals, filmed: Path, tmp_path: Path) -> 
     wait_for(half_written, process)
     ends(process, signum)
     assert video.read_bytes() == OLD
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["short.mp4", "short.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["short-0.1x.mp4", "short.npz"]
     assert not encoders_of(tmp_path)
 
 
@@ -126,7 +126,7 @@ def test_a_job_in_the_background_of_a_script_ignores_ctrl_c_as_jobs_do(
         os.kill(process.pid, signal.SIGINT)
         time.sleep(0.02)
     assert process.returncode == 0
-    assert (tmp_path / "short.mp4").exists()
+    assert (tmp_path / "short-4x.mp4").exists()
 
 
 def has_child(process: subprocess.Popen[str]) -> bool:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from fuzzyq_bullet.cli import bench, explain, figure, replay, run, scenarios
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 app = typer.Typer(
     name="fuzzyq",
@@ -20,13 +25,21 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command("run")(run.run)
-app.command("replay")(replay.replay)
-app.command("validate")(scenarios.validate)
-app.command("schema")(scenarios.schema)
-app.command("list")(scenarios.list_scenarios)
-app.command("explain", context_settings=explain.CONTEXT_SETTINGS)(explain.explain)
-app.command("figure")(figure.figure)
+
+
+def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
+    """Add a command whose help is its docstring, less what is for its callers in Python."""
+    words = inspect.cleandoc(command.__doc__ or "").partition("\n\nRaises:")[0]
+    app.command(name, help=words, **settings)(command)
+
+
+_add("run", run.run)
+_add("replay", replay.replay)
+_add("validate", scenarios.validate)
+_add("schema", scenarios.schema)
+_add("list", scenarios.list_scenarios)
+_add("explain", explain.explain, context_settings=explain.CONTEXT_SETTINGS)
+_add("figure", figure.figure)
 app.add_typer(bench.app, name="bench")
 
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from rich import box
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
+
+from fuzzyq_bullet.planning.base import STEP_UNIT
+from fuzzyq_bullet.planning.settings import RoutineSettings
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy import FuzzyController, Inference, RuleTable
@@ -16,6 +20,10 @@ if TYPE_CHECKING:
 
 FIRES = 0.01
 """Gaussians never reach 0, so every rule fires a little; below this a rule does not count."""
+WIDE = 80
+"""Columns for all of it side by side; with fewer, what stands beside goes below."""
+TURN_UNIT: float = RoutineSettings.model_fields["turn_unit"].default
+WEIGHTS: tuple[float, float] = RoutineSettings.model_fields["weights"].default
 
 
 def as_dict(
@@ -63,18 +71,26 @@ def as_page(
         f"Df = {difference:g} S_p: {_roomier(difference)}", base.column, inference.side
     )
     inputs = Table.grid(padding=(0, 5))
-    inputs.add_row(near, side)
+    if width >= WIDE:
+        inputs.add_row(near, side)
+    else:
+        inputs.add_row(near)
+        inputs.add_row(side)
     return Group(
         _title("Inputs, and how far they belong to each set (Table 2)"),
         inputs,
         Text(),
         _title(f"Rules (Table 4, {rules}): [turn step] and strength, ◀ the strongest"),
-        _rule_table(controller, inference),
+        Text("Columns NB and NS: the right is freer; PS and PB: the left is."),
+        _rule_table(controller, inference, folded=width < WIDE),
         _title("Rules that fire, strongest first"),
         _sentences(controller, inference, width),
         Text(),
         _title(f"Outputs (centroid of {controller.samples} points, Eq. 22)"),
-        _outputs(base.outputs, inference),
+        _outputs(base.outputs, inference, folded=width < WIDE),
+        Text(),
+        _title("In metres and degrees"),
+        _in_units(inference),
     )
 
 
@@ -118,34 +134,34 @@ def _bar(share: float, width: int, style: str) -> Text:
     return Text.assemble((bar, style), ("·" * (width - len(bar)), "dim"))
 
 
-def _rule_table(controller: FuzzyController, inference: Inference) -> Table:
+def _rule_table(controller: FuzzyController, inference: Inference, *, folded: bool) -> Table:
     base = controller.base
     strongest = float(inference.rules.max())
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1))
-    table.add_column("d \\ Df", style="bold")
+    table.add_column("d \\ Df", style="bold", overflow="fold")
     for label in base.column.labels:
-        table.add_column(label, no_wrap=True)
+        table.add_column(label, overflow="fold")
     for label, cells, strengths in zip(
         base.row.labels, base.cells, inference.rules.tolist(), strict=True
     ):
         table.add_row(
             label,
             *(
-                _cell(cell, strength, strongest)
+                _cell(cell, strength, strongest, folded=folded)
                 for cell, strength in zip(cells, strengths, strict=True)
             ),
         )
     return table
 
 
-def _cell(labels: tuple[str, ...], strength: float, strongest: float) -> Text:
+def _cell(labels: tuple[str, ...], strength: float, strongest: float, *, folded: bool) -> Text:
     """Write one rule so that weak, firing and strongest differ in shape, not only in colour."""
-    names = " ".join(labels)
+    names = f"{' '.join(labels):<5}" + ("\n" if folded else " ")
     if strength < FIRES:
-        return Text(f"{names:<5}   ·  ", style="dim")
+        return Text(f"{names}  ·  ", style="dim")
     if strength == strongest:
-        return Text(f"{names:<5} {strength:.2f}◀", style="bold reverse cyan")
-    return Text.assemble(f"{names:<5} ", (f"{strength:.2f} ", "bold cyan"))
+        return Text(f"{names}{strength:.2f}◀", style="bold reverse cyan")
+    return Text.assemble(names, (f"{strength:.2f} ", "bold cyan"))
 
 
 def _sentences(controller: FuzzyController, inference: Inference, width: int) -> Table:
@@ -178,24 +194,48 @@ def _sentence(controller: FuzzyController, inference: Inference, rule: Rule) -> 
     )
 
 
-def _outputs(variables: tuple[Variable, ...], inference: Inference) -> Table:
+def _outputs(variables: tuple[Variable, ...], inference: Inference, *, folded: bool) -> Table:
     turn, step = variables
     # Rounded first, so that a turn shown as 0.00 is not said to go anywhere.
     scale = round(inference.turn, 2)
     way = "left" if scale > 0 else "right"
+    rows = (
+        (
+            Text(f"N_a = {scale:+.2f}" if scale else "N_a =  0.00", style="bold"),
+            # Left is positive, and drawn on the left.
+            _gauge(-scale, (-turn.domain[1], -turn.domain[0]), ("left", "right")),
+            f"turn to the {way} by {abs(scale):.2f}·ω2·A_p" if scale else "no turn",
+        ),
+        (
+            Text(f"N_s =  {inference.stride:.2f}", style="bold"),
+            _gauge(inference.stride, step.domain, ("short", "long")),
+            f"a step of {inference.stride:.2f}·ω1·S_p",
+        ),
+    )
     grid = Table.grid(padding=(0, 2))
-    grid.add_row(
-        Text(f"N_a = {scale:+.2f}" if scale else "N_a =  0.00", style="bold"),
-        # Left is positive, and drawn on the left.
-        _gauge(-scale, (-turn.domain[1], -turn.domain[0]), ("left", "right")),
-        f"turn to the {way} by {abs(scale):.2f}·ω2·A_p" if scale else "no turn",
-    )
-    grid.add_row(
-        Text(f"N_s =  {inference.stride:.2f}", style="bold"),
-        _gauge(inference.stride, step.domain, ("short", "long")),
-        f"a step of {inference.stride:.2f}·ω1·S_p",
-    )
+    for name, gauge, words in rows:
+        if folded:
+            grid.add_row(name, gauge)
+            grid.add_row("", words)
+        else:
+            grid.add_row(name, gauge, words)
     return grid
+
+
+def _in_units(inference: Inference) -> Group:
+    """Say what the outputs come to with the weights that count most: 1, and the default."""
+    w1, w2 = WEIGHTS
+    return Group(
+        f"S_p = {STEP_UNIT:g} m; A_p = {math.degrees(TURN_UNIT):.0f}° unless turn_unit is set.",
+        f"ω1, ω2 = 1, 1: {_turn_and_step(inference, 1.0, 1.0)}",
+        f"ω1, ω2 = {w1:g}, {w2:g}: {_turn_and_step(inference, w1, w2)} (default)",
+    )
+
+
+def _turn_and_step(inference: Inference, w1: float, w2: float) -> str:
+    degrees = round(math.degrees(w2 * inference.turn * TURN_UNIT), 1)
+    way = f"{abs(degrees):.1f}° to the {'left' if degrees > 0 else 'right'}" if degrees else "0°"
+    return f"turn {way}, step {w1 * inference.stride * STEP_UNIT:.3f} m"
 
 
 def _gauge(value: float, domain: tuple[float, float], ends: tuple[str, str]) -> Text:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from fuzzyq_bullet.cli.folder import FOLDER
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.figures import FIGURES, drawing
 
@@ -15,7 +16,7 @@ def figure(
     number: Annotated[
         int, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper.")
     ],
-    out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("out"),
+    out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
 ) -> None:
     """Draw a figure of the paper and print the files written.
 

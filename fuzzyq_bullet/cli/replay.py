@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.film import SpeedOption, film
+from fuzzyq_bullet.cli.film import SpeedOption, film, film_name
+from fuzzyq_bullet.cli.folder import FOLDER
 
 
 def replay(
@@ -16,11 +17,14 @@ def replay(
     ],
     *,
     out: Annotated[
-        Path | None, typer.Option(help="Folder to write into; by default that of the record.")
+        Path | None,
+        typer.Option(help="Folder to write into; by default that of the record.", **FOLDER),
     ] = None,
     speed: SpeedOption = 1.0,
 ) -> None:
     """Make the video NAME.mp4 from a record, without running anything again.
+
+    At a speed other than 1 it is called by that: NAME-4x.mp4.
 
     Raises:
         UserError: If the record cannot be read, or the video cannot be written.
@@ -30,7 +34,7 @@ def replay(
     from fuzzyq_bullet.trajectory import Trajectory
 
     record = Trajectory.load(trajectory)
-    (video,) = writable_files(out or trajectory.parent, [f"{trajectory.stem}.mp4"])
+    (video,) = writable_files(out or trajectory.parent, [film_name(trajectory.stem, speed)])
     if video == trajectory:
         raise UserError(f"{trajectory}: its own video would replace it; call it NAME.npz")
     typer.echo(film(record, video, speed))

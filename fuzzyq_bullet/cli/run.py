@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from fuzzyq_bullet.cli.console import progress_bar, say
-from fuzzyq_bullet.cli.film import SpeedOption, film
+from fuzzyq_bullet.cli.film import SpeedOption, film, film_name, films_of
+from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fuzzyq_bullet.metrics import Result
+    from fuzzyq_bullet.scenario import Scenario
+    from fuzzyq_bullet.trajectory import Trajectory
 
 
 def run(
@@ -22,24 +26,29 @@ def run(
         typer.Argument(metavar="SCENARIO", help="A scenario file, or the name of a bundled one."),
     ],
     *,
-    planner: Annotated[str | None, typer.Option(help="Planner to use instead.")] = None,
+    planner: Annotated[
+        str | None,
+        typer.Option(help="Planner to use instead, with the same settings as far as it has them."),
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed to use instead.")] = None,
     drive: Annotated[str | None, typer.Option(help="wheels (physics) or kinematic.")] = None,
-    out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("out"),
+    out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
     video: Annotated[bool, typer.Option("--video/--no-video", help="Make the video.")] = True,
     speed: SpeedOption = 1.0,
     json: Annotated[bool, typer.Option("--json", help="Result as JSON on stdout, alone.")] = False,
 ) -> None:
     """Drive a scenario; write NAME.mp4, NAME.npz (the record) and NAME.json (the result).
 
-    Exit code 1 when the run misses what the scenario expects.
+    At a speed other than 1 the video is called by that: NAME-4x.mp4. Exit code 1 when the run
+    misses what the scenario expects.
     """
     # What takes long to load waits until the scenario is known to be right.
     from fuzzyq_bullet.files import writable_files, write_text
-    from fuzzyq_bullet.scenario import load_scenario, realise, with_options
+    from fuzzyq_bullet.scenario import load_scenario, realise
 
-    task = realise(with_options(load_scenario(scenario), planner=planner, seed=seed, drive=drive))
-    names = [f"{task.name}{ending}" for ending in (".mp4", ".npz", ".json")]
+    asked = _with_options(load_scenario(scenario), planner=planner, seed=seed, drive=drive)
+    task = realise(asked)
+    names = [film_name(task.name, speed), f"{task.name}.npz", f"{task.name}.json"]
     mp4, npz, result_file = written = writable_files(out, names)
 
     from fuzzyq_bullet.episode import run as run_episode
@@ -64,21 +73,62 @@ def run(
     if json:
         typer.echo(result.model_dump_json(indent=2))
     misses = missed(task.expect, result)
-    _summarise(result, misses, written)
+    _summarise(result, misses, trajectory, listed=len(asked.obstacles))
+    for path in written:
+        say(f"  {path}")
+    for path in films_of(out, task.name):
+        if path not in written:
+            say(f"{path} is of an earlier run")
     if misses:
         raise typer.Exit(1)
 
 
-def _summarise(result: Result, misses: Sequence[str], written: Sequence[Path]) -> None:
+def _with_options(scenario: Scenario, **options: Any) -> Scenario:
+    from fuzzyq_bullet.scenario import with_options
+
+    try:
+        return with_options(scenario, **options)
+    except UserError as error:  # each names the argument, which here is an option
+        raise UserError(*(f"--{problem}" for problem in error.problems)) from error
+
+
+def _summarise(
+    result: Result, misses: Sequence[str], trajectory: Trajectory, *, listed: int
+) -> None:
     clearance = result.min_clearance_m
-    near = "nothing near" if clearance is None else f"least clearance {clearance:.3f} m"
+    near = "nothing near" if clearance is None else f"least clearance {_plain(clearance, 3)} m"
     say(
         f"{result.scenario}: {result.outcome} after {result.time_s:.1f} s, "
         f"path {result.path_length_m:.2f} m, {near} "
         f"({result.planner}, {result.drive}, seed {result.seed})",
         style="bold",
     )
+    contact = touched(trajectory, listed)
+    if contact:
+        say(contact, style="bold")
     for miss in misses:
         say(f"not as expected: {miss}", style="bold")
-    for path in written:
-        say(f"  {path}")
+
+
+def touched(trajectory: Trajectory, listed: int) -> str:
+    """Say what the robot touched, where and when; nothing if it touched nothing.
+
+    Args:
+        trajectory: The record of the run.
+        listed: How many of its obstacles, the first ones, are in the scenario file.
+    """
+    collision = trajectory.collision
+    if collision is None:
+        return ""
+    i = collision.obstacle
+    if i < 0:
+        what = "a wall"
+    else:
+        shape = trajectory.scenario.obstacles[i].shape
+        what = f"the {shape} obstacles[{i}]" + ("" if i < listed else " (drawn)")
+    x, y = (_plain(value, 2) for value in collision.point)
+    return f"touched {what} at ({x}, {y}) after {collision.time:.1f} s"
+
+
+def _plain(value: float, digits: int) -> str:
+    return f"{round(value, digits) + 0.0:.{digits}f}"  # the sum makes 0 of a negative 0
