@@ -14,7 +14,7 @@ import math
 from dataclasses import dataclass, replace
 
 from fuzzyq_bullet.geometry import wrap_angle
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Decision, Mode, Observation
 from fuzzyq_bullet.planning.sweep import Found, eased, first_free
 
 ENOUGH = 1.0 * STEP_UNIT
@@ -207,7 +207,7 @@ class Escape:
         routine: Decision,
         observation: Observation,
         found: Found,
-        mode: str,
+        mode: Mode,
         target: tuple[float, float],
     ) -> Decision:
         if observation.motion is None:
@@ -218,7 +218,7 @@ class Escape:
             routine,
             heading=found.heading,
             step=step,
-            mode=mode,  # type: ignore[arg-type]
+            mode=mode,
             target=target,
         )
 
