@@ -7,7 +7,8 @@ import pytest
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning import MODES, ImprovedFuzzySettings
+from fuzzyq_bullet.planning import MODES, Decision, ImprovedFuzzySettings, Observation
+from fuzzyq_bullet.planning.escape import Escape
 from fuzzyq_bullet.planning.sweep import first_free
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder, Goal, Limits, Scenario, Start
 
@@ -105,6 +106,56 @@ def test_an_escape_says_where_it_is_going():
     following = decisions.mode == MODES.index("following")
     here = trajectory.ticks.position[decisions.tick[following]]
     assert np.hypot(*(decisions.target[following] - here).T).max() < 1.0
+
+
+def blocked_ahead(position, difference):
+    """Return what the routine part and the escape see where only the way to the goal is blocked."""
+    bearing = math.atan2(-position[1], 100.0 - position[0])
+
+    def sense(headings):
+        return np.array([0.1 if abs(one - bearing) < 0.5 else 1.0 for one in headings])
+
+    lines = np.array([bearing + 0.8, bearing, bearing - 0.8])
+    routine = Decision(
+        heading=bearing,
+        step=0.1,
+        lines=lines,
+        lengths=sense(lines),
+        difference=difference,
+        weights=(1.0, 1.0),
+    )
+    observation = Observation(
+        time=0.0,
+        position=position,
+        heading=bearing,
+        speed=0.0,
+        turn_rate=0.0,
+        goal=(100.0, 0.0),
+        goal_radius=0.2,
+        range=1.0,
+        sense=sense,
+    )
+    return routine, observation
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_tie_of_both_sides_is_broken_by_the_side_with_more_room(sign):
+    decision = Escape().decide(*blocked_ahead((0.0, 0.0), 2.0 * sign))
+    assert decision.mode == "breakout"
+    assert decision.heading * sign > 0.4
+
+
+def test_it_tries_the_other_direction_after_a_while_and_then_after_twice_as_long():
+    escape = Escape()
+    sides = []
+    for step in range(60):
+        decision = escape.decide(*blocked_ahead((0.0, 0.5 * step), 1.0))
+        sides.append(escape._boundary.side)
+        assert decision.mode in {"breakout", "following"}
+    turned = [k for k in range(1, 60) if sides[k] != sides[k - 1]]
+    # 8 m and then 16 m of way, half a metre each time.
+    assert turned[0] == pytest.approx(16, abs=1)
+    assert turned[1] - turned[0] == pytest.approx(32, abs=1)
 
 
 @pytest.mark.parametrize("side", [1, -1])

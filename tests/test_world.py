@@ -85,6 +85,16 @@ def test_a_graze_of_a_few_steps_is_noticed(engine):
     assert passed is None
 
 
+@pytest.mark.parametrize(("overlap", "speed"), [(0.0002, 0.05), (0.0005, 0.05), (0.0005, 0.3)])
+def test_the_lightest_graze_counts_where_it_begins(engine, overlap, speed):
+    world = World([cylinder(3.0, 3.0)], FIELD, engine=engine)
+    _, contact = run_into(world, 2.6, 3.0 + 0.4 - overlap, 0.0, speed=speed, steps=4000)
+    assert contact is not None
+    assert 0.0 < contact.force < 50.0  # less than the weight of the robot
+    state = world.robot.state()
+    assert math.hypot(state.x - 3.0, state.y - 3.0) == pytest.approx(0.4, abs=1e-4)
+
+
 def test_wheels_and_ground_are_no_contact(engine):
     world = World([], FIELD, engine=engine)
     assert run_into(world, 2.0, 3.0, 0.0, steps=240) == (240, None)
