@@ -1,14 +1,17 @@
 """Whole episodes: what drives, what touches, what is recorded, and that it repeats."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from fuzzyq_bullet import metrics
 from fuzzyq_bullet.episode import run, run_in
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import result_of
+from fuzzyq_bullet.oracle import shortest_path
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import (
@@ -273,9 +276,43 @@ def test_the_bundled_scenarios_keep_what_they_expect(name):
         assert result.time_s <= task.expect.max_time
 
 
-def test_parts_that_come_later_are_null(crossing):
+def test_every_decision_is_counted_in_its_mode(crossing):
     result = result_of(crossing)
-    assert result.shortest_path_m is None
-    assert result.spl is None
     modes = result.modes
     assert modes.routine + modes.breakout + modes.following == result.decisions
+
+
+def test_a_result_compares_the_driven_path_with_the_shortest(crossing):
+    result = result_of(crossing)
+    assert result.shortest_path_m == pytest.approx(shortest_path(crossing.scenario).length)
+    assert 3.8 < result.shortest_path_m < result.path_length_m
+    assert result.spl == pytest.approx(result.shortest_path_m / result.path_length_m, abs=1e-6)
+
+
+def test_a_run_that_failed_where_there_was_a_way_weighs_nothing():
+    result = result_of(run(scenario(limits=Limits(time=1.0))))
+    assert result.outcome == "timeout"
+    assert result.shortest_path_m == pytest.approx(3.8)
+    assert result.spl == 0.0
+
+
+def test_where_there_is_no_way_there_is_nothing_to_weigh_by():
+    wall = Box(shape="box", position=(2.5, 2.5), size=(0.2, 5.0))
+    result = result_of(run(scenario(obstacles=(wall,), limits=Limits(time=1.0))))
+    assert result.outcome != "goal"
+    assert result.shortest_path_m is None
+    assert result.spl is None
+
+
+@pytest.mark.parametrize(
+    ("item", "each"), [(cylinder(2.5, 1.0), 1), (Box(shape="box", position=(2, 1), size=(1, 1)), 4)]
+)
+def test_among_too_many_obstacles_nobody_waits_for_the_shortest_path(item, each, monkeypatch):
+    asked = []
+    monkeypatch.setattr(metrics, "shortest_path", asked.append)
+    trajectory = run(scenario(limits=Limits(time=0.5)))
+    for count in (metrics.MOST_ROUND // each, metrics.MOST_ROUND // each + 1):
+        task = trajectory.scenario.model_copy(update={"obstacles": (item,) * count})
+        result = result_of(replace(trajectory, scenario=task))
+        assert (result.shortest_path_m, result.spl) == (None, None)
+    assert len(asked) == 1
