@@ -1,0 +1,135 @@
+"""Where a training stands after an episode: kept on disk, so that an interruption costs nothing.
+
+Writing one takes about half a millisecond, and an episode far longer, so one is written after every
+episode. Eligibility traces end with their episode and random streams begin with it: a table, the
+curve so far and what the training was begun with are all that there is to keep.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzyq_bullet.archive import read_arrays
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import written_beside
+from fuzzyq_bullet.learning.tabular import Floats
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+Plain: TypeAlias = "str | int | float | bool"
+Curve: TypeAlias = NDArray[np.void]
+"""The learning curve: a row an episode, with ``total``, ``steps`` and ``outcome``."""
+
+ROW = np.dtype([("total", "<f8"), ("steps", "<i4"), ("outcome", "S16")])
+FORMAT = 1
+LARGEST = 1e9
+"""No value that was learned well is larger; whoever gets there diverges."""
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """The state of a training between two episodes.
+
+    Attributes:
+        plan: What the training was begun with; only the same can resume it.
+        table: What was learned, shape (S, A).
+        curve: A row for each finished episode, of the type ``ROW``.
+    """
+
+    plan: Mapping[str, Plain]
+    table: Floats
+    curve: Curve
+
+    def save(self, path: Path) -> None:
+        """Write it whole or not at all, over the one before.
+
+        Raises:
+            UserError: If it cannot be written.
+        """
+        head = json.dumps({"format": FORMAT, "plan": dict(self.plan)}).encode()
+        content = io.BytesIO()
+        np.savez(content, head=np.frombuffer(head, np.uint8), table=self.table, curve=self.curve)
+        with written_beside(path) as part:
+            part.write_bytes(content.getbuffer())
+
+    @classmethod
+    def find(cls, path: Path) -> Checkpoint | None:
+        """Read one written by ``save``, if there is one.
+
+        Raises:
+            UserError: If there is something that cannot be read, is damaged or no checkpoint.
+        """
+        try:
+            if not path.exists():
+                return None
+        except OSError as error:  # a folder that may not be entered, a name too long
+            raise UserError(f"{path}: cannot be read: {error.strerror or error}") from error
+        return cls.load(path)
+
+    @classmethod
+    def load(cls, path: Path) -> Checkpoint:
+        """Read one written by ``save``.
+
+        Raises:
+            UserError: If it cannot be read, is damaged or none at all.
+        """
+        if path.exists() and not path.is_file():
+            raise UserError(f"{path}: is not a file; give the checkpoint of a training")
+        arrays = read_arrays(path)
+        try:
+            head = json.loads(arrays["head"].tobytes().decode())
+            form, plan = head["format"], head["plan"]
+            table, curve = arrays["table"], arrays["curve"]
+        except (KeyError, TypeError, ValueError, RecursionError) as error:
+            raise UserError(f"{path}: not the checkpoint of a training") from error
+        if form != FORMAT:
+            shown = repr(form)[:20]
+            raise UserError(f"{path}: a checkpoint of format {shown}; this version reads {FORMAT}")
+        if not isinstance(plan, dict) or table.dtype != np.float64 or curve.dtype != ROW:
+            raise UserError(f"{path}: not the checkpoint of a training, or damaged")
+        if table.ndim != 2 or curve.ndim != 1 or not is_sound(table):
+            raise UserError(f"{path}: damaged: its table or curve cannot be one of a training")
+        return cls(plan, table, curve)
+
+    def check(self, path: Path, plan: Mapping[str, Plain], shape: tuple[int, ...]) -> None:
+        """Make sure that this is the training which is to be resumed.
+
+        Args:
+            path: What to call it in messages.
+            plan: What the training is to be resumed with.
+            shape: Shape of the learner's table.
+
+        Raises:
+            UserError: If it was begun with anything else.
+        """
+        for key in sorted({*plan, *self.plan}):
+            was, now = self.plan.get(key), plan.get(key)
+            if was != now:
+                raise UserError(
+                    f"{path}: belongs to another training: {_shown(key)} was {_shown(was)} and is "
+                    f"{_shown(now)} now; resume with what it was begun with, or begin anew"
+                )
+        if self.table.shape != shape:
+            raise UserError(
+                f"{path}: belongs to another training: its table is of shape {self.table.shape}, "
+                f"that of the learner {shape}"
+            )
+        if len(self.curve) > int(plan.get("episodes", 0)):
+            raise UserError(f"{path}: damaged: it holds more episodes than the training has")
+
+
+def is_sound(table: NDArray[Any]) -> bool:
+    """Return whether all values are finite and none is absurd."""
+    return bool((np.abs(table) <= LARGEST).all())
+
+
+def _shown(value: Any) -> str:
+    return "nothing" if value is None else ascii(value).strip("'")[:60]

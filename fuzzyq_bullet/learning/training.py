@@ -1,0 +1,163 @@
+"""Learning over many episodes, in a way that can be interrupted anywhere and resumed exactly."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.learning.checkpoint import LARGEST, ROW, Checkpoint, Curve, Plain, is_sound
+from fuzzyq_bullet.learning.choice import epsilon_greedy
+from fuzzyq_bullet.learning.schedules import EXPLORATION, LEARNING_RATE, TRACE_DECAY, Schedule
+from fuzzyq_bullet.version import __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
+    from fuzzyq_bullet.learning.problem import Learner, Problem, State
+
+MAX_EPISODES = 1_000_000
+_CHOICES = 0
+"""The random stream of an episode that chooses actions; a problem takes others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """How to train; by default as the paper says.
+
+    Attributes:
+        episodes: Max.Episodes of Eqs. 20 and 21.
+        seed: Where all chance comes from.
+        rate: The learning rate η or α (Eq. 20).
+        trace_decay: λ (Eq. 21), or a constant: ``Schedule(0.9)``.
+        exploration: ε, the chance of an action at random.
+        max_steps: M_s, after which an episode is cut short. What could still have been earned
+            then counts: the last step is learned from like any other.
+        random_ties: Whether actions of equal value are drawn from; else the first is taken.
+    """
+
+    episodes: int = 200
+    seed: int = 0
+    rate: Schedule = LEARNING_RATE
+    trace_decay: Schedule = TRACE_DECAY
+    exploration: Schedule = EXPLORATION
+    max_steps: int = 3000
+    random_ties: bool = False
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.episodes <= MAX_EPISODES:
+            raise UserError(f"episodes: must be 1 to {MAX_EPISODES}, got {self.episodes}")
+        if self.seed < 0:
+            raise UserError(f"seed: must be at least 0, got {self.seed}")
+        if self.max_steps < 1:
+            raise UserError(f"max_steps: must be at least 1, got {self.max_steps}")
+
+    def describe(self) -> dict[str, Plain]:
+        """Return all of it as plain values by name, such as ``rate.start``."""
+        flat: dict[str, Plain] = {}
+        for name, value in asdict(self).items():
+            if isinstance(value, dict):
+                flat.update({f"{name}.{part}": number for part, number in value.items()})
+            else:
+                flat[name] = value
+        return flat
+
+
+def episode_rng(seed: int, episode: int, stream: int) -> np.random.Generator:
+    """Return a random generator of one episode's own, the same whatever was drawn before.
+
+    Args:
+        seed: The seed of the training.
+        episode: Its number, counted from 1.
+        stream: 0 chooses the actions; a problem takes 1 and above.
+    """
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(episode, stream)))
+
+
+def train(
+    problem: Problem[State],
+    learner: Learner[State],
+    setup: Setup,
+    *,
+    made: Mapping[str, Plain] | None = None,
+    checkpoint: Path | None = None,
+    resume: bool = False,
+    on_episode: Callable[[Curve], None] | None = None,
+) -> Curve:
+    """Let a learner learn a problem.
+
+    Args:
+        problem: What is to be learned.
+        learner: What learns; it begins with the table that it has.
+        setup: For how long, and how fast.
+        made: What else the result depends on, such as the problem's parameters. A checkpoint
+            keeps it, and is resumed with the same only.
+        checkpoint: File that is renewed after every episode, whole or not at all.
+        resume: Go on from ``checkpoint``, to the very table that an uninterrupted training ends
+            with. Without that file the training begins at the first episode.
+        on_episode: Called after each finished episode, once it is safe on disk, with the curve
+            so far.
+
+    Returns:
+        The learning curve: ``total`` (sum of rewards), ``steps`` and ``outcome`` of each episode.
+
+    Raises:
+        UserError: If the checkpoint cannot be written, or read, or is that of another training;
+            or if the learning diverges.
+        ValueError: If the problem gives a reward that is not finite, or an unfit outcome.
+    """
+    plan = {"version": __version__, **setup.describe(), **learner.describe(), **(made or {})}
+    curve = np.zeros(setup.episodes, ROW)
+    done = 0
+    saved = Checkpoint.find(checkpoint) if resume and checkpoint is not None else None
+    if saved is not None and checkpoint is not None:
+        saved.check(checkpoint, plan, learner.table.shape)
+        done = len(saved.curve)
+        curve[:done] = saved.curve
+        learner.table = saved.table
+    elif checkpoint is not None:  # now rather than after an episode, should that not be possible
+        Checkpoint(plan, learner.table, curve[:0]).save(checkpoint)
+    for episode in range(done + 1, setup.episodes + 1):
+        curve[episode - 1] = _play(problem, learner, setup, episode)
+        table = learner.table
+        if not is_sound(table):
+            raise UserError(
+                f"episode {episode}: the learning diverges, to values beyond {LARGEST:g}; "
+                "take a smaller learning rate or trace decay"
+            )
+        finished = curve[:episode]
+        if checkpoint is not None:
+            Checkpoint(plan, table, finished).save(checkpoint)
+        if on_episode is not None:
+            on_episode(finished)
+    return curve
+
+
+def _play(
+    problem: Problem[State], learner: Learner[State], setup: Setup, episode: int
+) -> tuple[float, int, bytes]:
+    """Play one episode, learning all the way, and return its row of the curve."""
+    rng = episode_rng(setup.seed, episode, _CHOICES)
+    epsilon = setup.exploration.at(episode, setup.episodes)
+    learner.begin(
+        setup.rate.at(episode, setup.episodes), setup.trace_decay.at(episode, setup.episodes)
+    )
+    state = problem.reset(episode)
+    total, steps, over = 0.0, 0, False
+    while not over and steps < setup.max_steps:
+        action = epsilon_greedy(learner.values(state), epsilon, rng, random_ties=setup.random_ties)
+        after, reward, over = problem.step(action)
+        learner.learn(state, action, reward, None if over else after)
+        state = after
+        total += reward
+        steps += 1
+    if not math.isfinite(total):
+        raise ValueError(f"episode {episode}: its rewards sum to {total}")
+    outcome = problem.outcome.encode("ascii", "replace")
+    if len(outcome) > ROW["outcome"].itemsize:
+        raise ValueError(f"episode {episode}: the outcome {problem.outcome!r} is too long")
+    return total, steps, outcome
