@@ -1,0 +1,197 @@
+"""One run seen from straight above, drawn from its record alone: the world, the way, what befell.
+
+For print: dark on white, in Okabe and Ito's palette, which the colour-blind tell apart. Lines and
+marks differ in width and shape too, so that the picture can be read in grey.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Polygon
+
+from fuzzyq_bullet.planning.base import MODES
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle
+from fuzzyq_bullet.video.outline import arrow, footprint
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Patch
+    from numpy.typing import NDArray
+
+    from fuzzyq_bullet.trajectory import Trajectory
+
+
+class Stroke(NamedTuple):
+    """How a stretch of the path is drawn.
+
+    Attributes:
+        colour: Its colour.
+        width: Width (points).
+        words: What the legend says.
+    """
+
+    colour: str
+    width: float
+    words: str
+
+
+PATH = {
+    "routine": Stroke("#0072B2", 1.8, "path: routine"),
+    "breakout": Stroke("#D55E00", 3.8, "breakout"),
+    "following": Stroke("#E69F00", 2.8, "following an obstacle"),
+}
+"""By mode. The thickest is the shortest: a breakout is often one decision long."""
+
+LEGEND = (
+    "start",
+    "goal",
+    *(stroke.words for stroke in PATH.values()),
+    TEMPORARY := "temporary goal of a breakout",
+    LEAVES := "leaves the obstacle",
+    LAST := "robot at the end",
+    HIT := "collision",
+)
+"""All that a panel may show, in the order of the legend."""
+
+_Look: TypeAlias = dict[str, Any]
+"""Arguments of matplotlib, whose values are of many types."""
+_Shown: TypeAlias = dict[str, Artist]
+
+_CORNERS = 60
+"""Of a polygon that stands for a circle."""
+_INK = "#222222"
+_OBSTACLE = "#B9BEC6"
+_EDGE = "#7C828C"
+_GOAL = "#009E73"
+_GOAL_FACE = "#40B696"
+_STRUCK = "#D55E00"
+_TARGET = "#A0478A"
+
+
+def _look(marker: str, face: str, rim: str, size: float) -> _Look:
+    """Return how a mark is drawn that has the same size (points) however large the arena is."""
+    return {"marker": marker, "mfc": face, "mec": rim, "ms": size, "mew": 1.4, "ls": ""}
+
+
+_START_LOOK = _look("o", "white", _INK, 9)
+_GOAL_LOOK = _look("o", _GOAL_FACE, _GOAL, 9)
+_END_LOOK = _look("o", _INK, _INK, 8)
+_TARGET_LOOK = _look("D", "white", _TARGET, 6.5)
+_LEAVE_LOOK = _look("s", "white", PATH["routine"].colour, 5)
+_HIT_LOOK = _look("X", _STRUCK, "white", 11)
+
+
+def draw_run(axes: Axes, trajectory: Trajectory, *, targets: bool = True) -> dict[str, Artist]:
+    """Draw a run over the whole arena.
+
+    Args:
+        axes: Where to.
+        trajectory: The record.
+        targets: Whether the temporary goals of breakouts are shown.
+
+    Returns:
+        What there is to explain: words, out of ``LEGEND``, and a sample of each mark drawn.
+    """
+    shown: _Shown = {}
+    _world(axes, trajectory, shown)
+    _path(axes, trajectory, shown)
+    _escapes(axes, trajectory, shown, targets)
+    _end(axes, trajectory, shown)
+    return shown
+
+
+def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
+    scenario = trajectory.scenario
+    width, depth = scenario.arena.size
+    axes.set_xlim(0.0, width)
+    axes.set_ylim(0.0, depth)
+    axes.set_aspect("equal")
+    hit = trajectory.collision
+    for index, obstacle in enumerate(scenario.obstacles):
+        struck = hit is not None and hit.obstacle == index
+        axes.add_patch(_shape(obstacle, struck))
+    for side in axes.spines.values():
+        side.set(linewidth=2.2 if scenario.arena.walls else 0.6, color=_INK)
+    start = Circle(scenario.start.position, ROBOT_RADIUS, fc="white", ec=_INK, lw=1.4, zorder=3)
+    axes.add_patch(start)
+    goal = scenario.goal
+    axes.add_patch(Circle(goal.position, goal.radius, fc=_GOAL_FACE, ec="none", zorder=3))
+    # Its rim is seen through the robot that came to rest there.
+    axes.add_patch(Circle(goal.position, goal.radius, fc="none", ec=_GOAL, lw=2.0, zorder=8))
+    shown["start"] = _sample(_START_LOOK)
+    shown["goal"] = _sample(_GOAL_LOOK)
+
+
+def _shape(obstacle: Obstacle, struck: bool) -> Patch:
+    look: _Look = {
+        "facecolor": _OBSTACLE,
+        "edgecolor": _STRUCK if struck else _EDGE,
+        "linewidth": 2.2 if struck else 0.6,
+        "zorder": 2.5 if struck else 2.0,
+    }
+    return Polygon(footprint(obstacle, _CORNERS), **look)
+
+
+def modes_by_tick(trajectory: Trajectory) -> NDArray[np.int64]:
+    """Return for each move, from one tick to the next, the index of its mode, shape (T − 1,)."""
+    ticks = np.arange(len(trajectory.ticks.time) - 1)
+    decision = np.searchsorted(trajectory.decisions.tick, ticks, side="right") - 1
+    modes: NDArray[np.int64] = trajectory.decisions.mode[decision]
+    return modes
+
+
+def _path(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
+    points = trajectory.ticks.position
+    moves = np.stack([points[:-1], points[1:]], axis=1)
+    modes = modes_by_tick(trajectory)
+    for index, mode in enumerate(MODES):
+        here = modes == index
+        if not here.any():
+            continue
+        stroke = PATH[mode]
+        axes.add_collection(
+            LineCollection(
+                list(moves[here]), colors=stroke.colour, linewidths=stroke.width,
+                capstyle="round", zorder=4.0 + index % 2,
+            )
+        )  # fmt: skip
+        shown[stroke.words] = Line2D([], [], color=stroke.colour, lw=stroke.width)
+
+
+def _escapes(axes: Axes, trajectory: Trajectory, shown: _Shown, targets: bool) -> None:
+    """Mark each beginning of a breakout, with its temporary goal, and each place of leaving."""
+    decisions = trajectory.decisions
+    places = trajectory.ticks.position[decisions.tick]
+    routine, breakout = MODES.index("routine"), MODES.index("breakout")
+    before = np.concatenate([[routine], decisions.mode[:-1]])
+    begun = targets & (decisions.mode == breakout) & (before != breakout)
+    for here, target in zip(places[begun], decisions.target[begun], strict=True):
+        line = np.stack([here, target])
+        axes.plot(*line.T, color=_TARGET, lw=1.2, ls=(0, (1.5, 1.8)), zorder=5.5)
+        axes.plot(*target, zorder=6, **_TARGET_LOOK)
+        shown[TEMPORARY] = _sample(_TARGET_LOOK)
+    left = (decisions.mode == routine) & (before != routine)
+    for here in places[left]:
+        axes.plot(*here, zorder=6, **_LEAVE_LOOK)
+        shown[LEAVES] = _sample(_LEAVE_LOOK)
+
+
+def _end(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
+    """Draw the robot where it came to its end, and where it touched something."""
+    x, y = trajectory.ticks.position[-1].tolist()
+    nose = arrow((x, y), float(trajectory.ticks.heading[-1]), 1.15 * ROBOT_RADIUS)
+    axes.add_patch(Circle((x, y), ROBOT_RADIUS, fc=_INK, ec="none", zorder=7))
+    axes.add_patch(Polygon(nose, fc="white", ec="none", zorder=7.5))
+    shown[LAST] = _sample(_END_LOOK)
+    if trajectory.collision is not None:
+        axes.plot(*trajectory.collision.point, zorder=8, **_HIT_LOOK)
+        shown[HIT] = _sample(_HIT_LOOK)
+
+
+def _sample(look: _Look) -> Line2D:
+    return Line2D([], [], **look)
