@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 import sys
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from fuzzyq_bullet.cli import bench, explain, figure, replay, run, scenarios
+from fuzzyq_bullet.cli.words import help_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
 
@@ -28,9 +28,7 @@ app = typer.Typer(
 
 
 def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
-    """Add a command whose help is its docstring, less what is for its callers in Python."""
-    words = inspect.cleandoc(command.__doc__ or "").partition("\n\nRaises:")[0]
-    app.command(name, help=words, **settings)(command)
+    app.command(name, help=help_of(command), **settings)(command)
 
 
 _add("run", run.run)

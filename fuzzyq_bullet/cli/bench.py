@@ -1,10 +1,13 @@
-"""``fuzzyq bench``: measurements; every figure is a ratio taken within one run."""
+"""``fuzzyq bench``: measurements of the project, of its speed and of what it achieves."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
 import typer
+
+from fuzzyq_bullet.cli.bench_escape import escape
+from fuzzyq_bullet.cli.words import help_of
 
 app = typer.Typer(help="Measure the project itself.", no_args_is_help=True)
 
@@ -43,3 +46,6 @@ def speed(
     if missed:
         say("targets missed: " + "; ".join(row.what for row in missed), style="bold")
         raise typer.Exit(1)
+
+
+app.command("escape", help=help_of(escape))(escape)

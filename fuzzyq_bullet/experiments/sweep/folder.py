@@ -1,0 +1,98 @@
+"""The folder of a sweep: it remembers the settings it was made with and refuses any others."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import writable_folder, write_text, written_beside
+
+_ABSENT = "nothing"
+
+
+class Folder:
+    """Where a sweep keeps its settings, its journal, its records and its table.
+
+    Attributes:
+        path: The folder.
+        journal: Path of the rows as they come.
+        records: Folder of the records kept.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.journal = path / "journal.jsonl"
+        self.records = path / "records"
+        self._settings = path / "settings.json"
+
+    def claim(self, settings: Mapping[str, Any]) -> None:
+        """Make the folder one for a sweep of these settings, or make sure that it is.
+
+        Args:
+            settings: All that the rows depend on, as JSON can say it.
+
+        Raises:
+            UserError: If it was made with other settings, or cannot be written to.
+        """
+        wanted = json.loads(json.dumps(settings))
+        writable_folder(self.path)
+        before = self._read()
+        if before is None:
+            if self.journal.exists():
+                raise UserError(
+                    f"{self._settings}: is gone, and {self.journal.name} is of no use alone"
+                )
+            write_text(self._settings, json.dumps(wanted, indent=2) + "\n")
+        elif before != wanted:
+            told = "; ".join(_differences(before, wanted))
+            raise UserError(
+                f"{self.path}: holds a sweep with other settings: {told}; use another --out"
+            )
+        writable_folder(self.records)
+
+    def tidy(self) -> None:
+        """Remove what a process left half-written when it was killed; none may be at work."""
+        for folder in (self.path, self.records):
+            for left in folder.glob(".*.part"):
+                shutil.rmtree(left, ignore_errors=True)
+
+    def keep(self, name: str, record: bytes) -> None:
+        """Keep a record (``.npz``).
+
+        Raises:
+            UserError: If it cannot be written.
+        """
+        with written_beside(self.records / f"{name}.npz") as part:
+            part.write_bytes(record)
+
+    def _read(self) -> dict[str, Any] | None:
+        try:
+            known = json.loads(self._settings.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            problem = error.strerror or error
+            raise UserError(f"{self._settings}: cannot be read: {problem}") from error
+        except (ValueError, RecursionError):
+            known = None
+        if not isinstance(known, dict):
+            raise UserError(f"{self._settings}: is damaged; use another --out")
+        return known
+
+
+def _differences(before: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
+    """Say which settings differ, in the order in which they are asked for."""
+    keys = [*wanted, *(key for key in before if key not in wanted)]
+    return [
+        f"{key} {_shown(before.get(key, _ABSENT))}, asked for {_shown(wanted.get(key, _ABSENT))}"
+        for key in keys
+        if before.get(key, _ABSENT) != wanted.get(key, _ABSENT)
+    ]
+
+
+def _shown(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value)

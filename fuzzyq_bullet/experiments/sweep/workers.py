@@ -1,0 +1,131 @@
+"""Jobs over worker processes: restarted when one dies, without blaming the innocent."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+import warnings
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from fuzzyq_bullet.experiments.sweep.episode import Done
+from fuzzyq_bullet.experiments.sweep.jobs import Job
+from fuzzyq_bullet.experiments.sweep.rows import Row
+
+Work: TypeAlias = Callable[[Job], Done]
+
+KILLED = "its worker process died twice: killed, out of memory, or crashed in a library"
+
+
+@dataclass(frozen=True)
+class Pool:
+    """What does the work: a backend of joblib.
+
+    Attributes:
+        workers: How many at a time; None for one a core.
+        backend: Name of a backend that joblib knows.
+        options: What else that backend is to be told (``joblib.parallel_config``).
+        deaths: What it raises when a worker dies; by default what loky does.
+    """
+
+    workers: int | None = None
+    backend: str = "loky"
+    options: Mapping[str, Any] = field(default_factory=dict)
+    deaths: tuple[type[BaseException], ...] | None = None
+
+
+def finished(jobs: Sequence[Job], work: Work, pool: Pool) -> Generator[Done, None, None]:
+    """Do the jobs; yield each as it is finished, in any order.
+
+    When a worker dies, all that were waiting with it are lost, and nobody knows whose fault it was.
+    Each of them is then done alone. The one that kills its worker again gets a row that says so,
+    and the others go on.
+
+    Args:
+        jobs: What to do.
+        work: Does one; runs in a worker.
+        pool: Who does it.
+    """
+    waiting = {job.key: job for job in jobs}
+    while waiting:
+        begun: dict[Any, Job] = {}
+        try:
+            for done in _parallel(list(waiting.values()), work, pool, begun):
+                del waiting[done.row.key]
+                begun.pop(done.row.key, None)
+                yield done
+        except _deaths(pool):
+            for job in list(begun.values()):
+                del waiting[job.key]
+                yield _alone(job, work, pool)
+
+
+def _alone(job: Job, work: Work, pool: Pool) -> Done:
+    try:
+        (done,) = _parallel([job], work, pool, {})
+    except _deaths(pool):
+        return Done(Row.failed(job, KILLED))
+    return done
+
+
+def _parallel(jobs: Sequence[Job], work: Work, pool: Pool, begun: dict[Any, Job]) -> Iterator[Done]:
+    """Do jobs through joblib, noting in ``begun`` which have been handed out."""
+    import joblib
+
+    workers = pool.workers or joblib.cpu_count()
+
+    def handed_out() -> Iterator[Any]:
+        for job in jobs:
+            begun[job.key] = job
+            yield joblib.delayed(work)(job)
+
+    # joblib would do the work of a single worker in this process, which it may then bring down. So
+    # it always has room for two, but is handed one job at a time.
+    ahead = 1 if workers == 1 else 2 * workers
+    options = {**_loky_options(pool), **pool.options}
+    with joblib.parallel_config(pool.backend, n_jobs=max(2, workers), **options):
+        parallel = joblib.Parallel(
+            return_as="generator_unordered", batch_size=1, pre_dispatch=ahead, max_nbytes=None
+        )
+        results = parallel(handed_out())
+        try:
+            for done in results:  # noqa: UP028 ("yield from" would close it before "finally" does)
+                yield done
+        finally:
+            with warnings.catch_warnings():  # that not all was waited for is known here
+                warnings.simplefilter("ignore")
+                results.close()
+
+
+def _deaths(pool: Pool) -> tuple[type[BaseException], ...]:
+    if pool.deaths is not None:
+        return pool.deaths
+    from joblib.externals.loky.process_executor import BrokenProcessPool
+
+    return (BrokenProcessPool,)
+
+
+def _loky_options(pool: Pool) -> dict[str, Any]:
+    if pool.backend != "loky":
+        return {}
+    # One thread each: there are as many workers as cores.
+    return {
+        "inner_max_num_threads": 1,
+        "initializer": _begin_worker,
+        "initargs": (os.getpid(),),
+    }
+
+
+def _begin_worker(parent: int) -> None:
+    """Leave Ctrl-C to the parent process, and end when that ends, even by ``kill -9``."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, name="watch-parent", daemon=True).start()

@@ -1,0 +1,141 @@
+"""The table of ``fuzzyq bench escape`` is plain arithmetic over rows made by hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from fuzzyq_bullet.experiments.escape.plan import TRAPS, Plan
+from fuzzyq_bullet.experiments.escape.table import Line, table_of
+from fuzzyq_bullet.experiments.sweep.rows import Row
+from fuzzyq_bullet.planning import ImprovedFuzzySettings
+
+
+def row(run: int = 0, **changes: Any) -> Row:
+    """A success: 11 m driven in 20 s where 10 m are the shortest."""
+    plain = {
+        "planner": "p",
+        "drive": "wheels",
+        "layout": "scatter",
+        "count": 25,
+        "run": run,
+        "seed": run,
+        "feasible": True,
+        "outcome": "goal",
+        "steps": 1,
+        "time_s": 20.0,
+        "path_length_m": 11.0,
+        "shortest_path_m": 10.0,
+        "spl": 10 / 11,
+        "min_clearance_m": 0.1,
+        "collisions": 0,
+        "digest": "d",
+    }
+    return Row(**{**plain, **changes})
+
+
+def stuck(run: int, **changes: Any) -> Row:
+    return row(run, **{"outcome": "stuck", "spl": 0.0, **changes})
+
+
+def only(*rows: Row) -> Line:
+    (line,) = table_of(rows, speed=0.6)
+    return line
+
+
+def missed(line: Line, drive: str = "wheels") -> list[str]:
+    return [target.what for target in line.missed_by(drive)]
+
+
+def test_shares_are_of_the_feasible_and_of_all() -> None:
+    line = only(row(0), row(1), stuck(2), stuck(3, feasible=False, shortest_path_m=None, spl=None))
+    figures = line.drives["wheels"]
+    assert (line.environments, line.feasible) == (4, 3)
+    assert figures.found == pytest.approx(2 / 3)
+    assert figures.found_of_all == pytest.approx(2 / 4)
+    assert missed(line) == ["found"]
+
+
+def test_the_path_is_a_mean_and_the_time_a_median_over_the_successes_alone() -> None:
+    line = only(
+        row(0, path_length_m=10.0, time_s=20.0),
+        row(1, path_length_m=12.0, time_s=40.0),
+        row(2, path_length_m=17.0, time_s=500.0),
+        stuck(3, path_length_m=900.0, time_s=600.0),
+    )
+    figures = line.drives["wheels"]
+    assert figures.path_ratio == pytest.approx((1.0 + 1.2 + 1.7) / 3)
+    assert figures.time_ratio == pytest.approx(40.0 / (10.0 / 0.6))
+    assert missed(line) == ["found", "path ratio"]
+
+
+@pytest.mark.parametrize(
+    ("count", "driven", "targets"),
+    [
+        (25, 11.0, []),
+        (25, 11.1, ["path ratio"]),
+        (50, 12.5, []),
+        (50, 12.6, ["path ratio"]),
+        (75, 90.0, []),
+        (125, 20.0, []),
+        (125, 20.1, ["path ratio"]),
+    ],
+)
+def test_how_long_a_path_may_be_depends_on_the_count(
+    count: int, driven: float, targets: list[str]
+) -> None:
+    assert missed(only(row(count=count, path_length_m=driven))) == targets
+
+
+def test_a_collision_counts_where_there_is_no_way_too() -> None:
+    line = only(row(0), stuck(1, outcome="collision", feasible=False, collisions=1))
+    assert line.drives["wheels"].collisions == 1
+    assert missed(line) == ["collisions"]
+
+
+def test_an_error_excuses_nothing() -> None:
+    blank = dict.fromkeys(("steps", "time_s", "path_length_m", "shortest_path_m", "spl", "digest"))
+    gone = row(1, outcome="error", feasible=None, collisions=None, error="E: lost", **blank)
+    line = only(row(0), gone)
+    assert line.drives["wheels"].found == 0.5
+    assert missed(line) == ["found", "errors"]
+
+
+def test_where_nothing_can_be_found_no_share_is_made_up() -> None:
+    line = only(stuck(0, feasible=False, shortest_path_m=None, min_clearance_m=None))
+    figures = line.drives["wheels"]
+    assert figures.found is figures.path_ratio is figures.time_ratio is figures.clearance is None
+    assert missed(line) == []
+
+
+def test_the_least_clearance_is_that_of_any_run() -> None:
+    assert only(row(0), stuck(1, min_clearance_m=0.02)).drives["wheels"].clearance == 0.02
+
+
+def test_drives_stand_beside_each_other_over_the_same_environments() -> None:
+    line = only(row(0), row(1), row(0, drive="kinematic"), stuck(1, drive="kinematic"))
+    assert list(line.drives) == ["wheels", "kinematic"]
+    assert (line.environments, line.feasible) == (2, 2)
+    assert missed(line, "wheels") == []
+    assert missed(line, "kinematic") == ["found"]
+
+
+def test_traps_are_one_family_and_lines_come_in_order() -> None:
+    traps = [row(k, layout=layout, count=None) for k, layout in enumerate(TRAPS)]
+    others = [row(layout="rectangles", count=30), row(count=125), row(count=5)]
+    lines = table_of([*others, *traps])
+    assert [(line.family, line.count, line.environments) for line in lines] == [
+        ("scatter", 5, 1),
+        ("scatter", 125, 1),
+        ("traps", None, 4),
+        ("rectangles", 30, 1),
+    ]
+
+
+def test_a_plan_takes_traps_in_turn_and_every_environment_with_every_drive() -> None:
+    plan = Plan(ImprovedFuzzySettings(), runs=2, counts=(5,), traps=6, rectangles=(30,))
+    jobs = plan.jobs()
+    assert len(jobs) == len({job.key for job in jobs}) == 2 * (2 + 6 + 2)
+    traps = [where.layout for where in plan.environments() if where.count is None]
+    assert traps == [*TRAPS, *TRAPS[:2]]
