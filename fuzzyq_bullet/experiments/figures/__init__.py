@@ -28,7 +28,7 @@ class Entry(NamedTuple):
 
 FIGURES: dict[int, Entry] = {
     4: Entry("figure4", "step and turn over all that the fuzzy controller can be told"),
-    9: Entry("figure9", "overlap of start or goal with an obstacle, and the safer environment"),
+    9: Entry("figure9", "an obstacle at the start or the goal, and the safer environment"),
     10: Entry("figure10", "deadlock in a semicircle without breakout, and three escapes"),
     11: Entry("figure11", "a large obstacle without and with sustained avoidance"),
     12: Entry("figure12", "80 and 120 random obstacles, rectangles, dense rectangles"),

@@ -1,8 +1,8 @@
-"""Fig. 9: the start overlaps an obstacle, the goal does, and Algorithm 2 that keeps both clear.
+"""Fig. 9: an obstacle at the start, one at the goal, and Algorithm 2, which keeps both clear.
 
 One field, drawn with one seed. In (a) and (b) Algorithm 2 is switched off (``margin: 0``), and an
-obstacle touches the robot's disc at the start, or the goal's; bodies cannot share a place as they
-do in the paper. The controller is the same in all three.
+obstacle stands 4 mm from the robot's disc at the start, or from the goal's; bodies cannot share a
+place as they do in the paper. The controller is the same in all three.
 """
 
 from __future__ import annotations
