@@ -294,8 +294,8 @@ def test_a_progress_bar_is_shown_on_a_terminal_and_gone_at_the_end(
 
 
 def test_every_command_explains_itself() -> None:
-    commands = "run", "replay", "validate", "schema", "list", "explain", "figure", "bench speed"
-    for name in commands:
+    commands = "run", "replay", "validate", "schema", "list", "explain", "figure"
+    for name in (*commands, "bench speed", "bench escape"):
         shown = CliRunner().invoke(app, [*name.split(), "--help"], prog_name="fuzzyq").stdout
         assert f"Usage: fuzzyq {name}" in shown
         assert "--help" in shown

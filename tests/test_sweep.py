@@ -268,7 +268,8 @@ def test_killed_it_goes_on_and_ends_in_the_same_bytes(
         assert not list(folder.glob(".*"))
 
 
-def test_ctrl_c_ends_a_sweep_in_good_order(tmp_path: Path) -> None:
+@pytest.mark.parametrize("moment", ["while workers start", "while they work"])
+def test_ctrl_c_ends_a_sweep_in_good_order(moment: str, tmp_path: Path) -> None:
     process = subprocess.Popen(
         [FUZZYQ, *ESCAPE, "--jobs", "2", "--out", tmp_path],
         stdout=subprocess.PIPE,
@@ -276,7 +277,11 @@ def test_ctrl_c_ends_a_sweep_in_good_order(tmp_path: Path) -> None:
         text=True,
         start_new_session=True,
     )
-    wait_for(lambda: rows_in(tmp_path / "journal.jsonl") > 0, process)
+    if moment == "while they work":
+        wait_for(lambda: rows_in(tmp_path / "journal.jsonl") > 0, process)
+    else:
+        wait_for(lambda: len(children_of(process.pid)) > 2, process)
+        time.sleep(0.1)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
     stdout, stderr = process.communicate(timeout=30)
     assert (process.returncode, stdout, stderr) == (130, "", "error: interrupted\n")

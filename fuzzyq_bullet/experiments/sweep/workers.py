@@ -8,6 +8,7 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -90,14 +91,17 @@ def _parallel(jobs: Sequence[Job], work: Work, pool: Pool, begun: dict[Any, Job]
         parallel = joblib.Parallel(
             return_as="generator_unordered", batch_size=1, pre_dispatch=ahead, max_nbytes=None
         )
-        results = parallel(handed_out())
+        results = None
         try:
+            with _deaf_to_ctrl_c() if pool.backend == "loky" else nullcontext():
+                results = parallel(handed_out())
             for done in results:  # noqa: UP028 ("yield from" would close it before "finally" does)
                 yield done
         finally:
             with warnings.catch_warnings():  # that not all was waited for is known here
                 warnings.simplefilter("ignore")
-                results.close()
+                if results is not None:
+                    results.close()
 
 
 def _deaths(pool: Pool) -> tuple[type[BaseException], ...]:
@@ -119,9 +123,29 @@ def _loky_options(pool: Pool) -> dict[str, Any]:
     }
 
 
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Start processes that leave Ctrl-C to this one, from their first moment on.
+
+    A terminal sends it to all of them, and a process that is still loading its libraries would
+    answer with a traceback. What is blocked here stays so in what is started meanwhile; this
+    process itself gets the signal afterwards.
+    """
+    from multiprocessing import resource_tracker
+
+    from joblib.externals.loky.backend import resource_tracker as loky_tracker
+
+    for tracker in (resource_tracker, loky_tracker):
+        tracker.ensure_running()  # first: what starts it lets the signal through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _begin_worker(parent: int) -> None:
-    """Leave Ctrl-C to the parent process, and end when that ends, even by ``kill -9``."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """End this worker when its parent process ends, even by ``kill -9``."""
 
     def watch() -> None:
         while os.getppid() == parent:
