@@ -327,6 +327,7 @@ def test_the_folder_of_another_sweep_is_refused_and_stays_as_it_is(
 MISTAKES = {
     ("--counts", "5,-1"): ["--counts", "'-1'", "0 to 10000"],
     ("--counts", "10001"): ["--counts", "0 to 10000"],
+    ("--counts", "9" * 5000): ["--counts", "0 to 10000"],
     ("--counts", "1e3"): ["--counts", "'1e3'"],
     ("--rectangles", ""): ["--rectangles", "none"],
     ("--counts", "none", "--rectangles", "none", "--traps", "0"): ["nothing to run"],
@@ -343,7 +344,7 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize("options", MISTAKES, ids=" ".join)
+@pytest.mark.parametrize("options", MISTAKES, ids=lambda one: " ".join(one)[:40])
 def test_a_mistake_is_one_line_and_nothing_is_run(
     options: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

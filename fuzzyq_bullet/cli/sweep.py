@@ -35,7 +35,12 @@ def counts_of(text: str, option: str) -> tuple[int, ...]:
     counts = set()
     for part in text.split(","):
         number = part.strip()
-        if not (number.isascii() and number.isdigit() and int(number[:9]) <= MAX_OBSTACLES):
+        if not (
+            number.isascii()
+            and number.isdigit()
+            and len(number) < 9
+            and int(number) <= MAX_OBSTACLES
+        ):
             raise UserError(
                 f"{option}: {part[:30]!r} is no number of obstacles; give numbers from 0 to "
                 f"{MAX_OBSTACLES} with commas between, or {NONE}"
