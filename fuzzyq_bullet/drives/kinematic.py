@@ -6,7 +6,7 @@ import math
 
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.physics.world import SENSOR_RANGE, World
+from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
 from fuzzyq_bullet.planning.base import Decision, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
@@ -43,7 +43,9 @@ class KinematicDriver:
             goal=self._goal.position,
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
+            radius=ROBOT_RADIUS + SENSOR_MARGIN,
             sense=lambda headings: self._world.sense(position, headings),
+            look=lambda headings: self._world.look(position, headings),
         )
 
     def advance(self, decision: Decision) -> None:

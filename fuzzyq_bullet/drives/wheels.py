@@ -65,7 +65,9 @@ class WheelsDriver:
             goal=self._goal.position,
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
+            radius=ROBOT_RADIUS + SENSOR_MARGIN,
             sense=lambda headings: self._world.sense(position, headings),
+            look=lambda headings: self._world.look(position, headings),
             motion=self._motion,
         )
 

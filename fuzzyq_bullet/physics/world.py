@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from enum import IntFlag
 
+import numpy as np
+
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact, Engine
 from fuzzyq_bullet.physics.lines import Floats, LineBundle
 from fuzzyq_bullet.physics.robot import BODY_HEIGHT, Robot
@@ -111,6 +113,29 @@ class World:
             start, stop, collisionFilterMask=_FACES, physicsClientId=self.engine.client
         )
         return self._lines.travel([hit[2] for hit in hits])
+
+    def look(self, origin: tuple[float, float], headings: Sequence[float]) -> Floats:
+        """Return the distance (m) from ``origin`` to what stands there along each heading.
+
+        Args:
+            origin: Centre of the robot (m).
+            headings: World headings (rad), at least one and at most 1000.
+
+        Returns:
+            Shape (K,), each in [0, ``SENSOR_RANGE + ROBOT_RADIUS + SENSOR_MARGIN``].
+        """
+        reach = SENSOR_RANGE + ROBOT_RADIUS + SENSOR_MARGIN
+        x, y = origin
+        stop = [
+            (x + reach * math.cos(one), y + reach * math.sin(one), BODY_HEIGHT) for one in headings
+        ]
+        hits = self._api.rayTestBatch(
+            [(x, y, BODY_HEIGHT)] * len(stop),
+            stop,
+            collisionFilterMask=_FACES,
+            physicsClientId=self.engine.client,
+        )
+        return reach * np.array([hit[2] for hit in hits])
 
     def clearance(self, x: float, y: float) -> float:
         """Return the distance (m) from the robot's body to the nearest obstacle or wall.

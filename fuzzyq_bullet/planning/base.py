@@ -19,7 +19,7 @@ LONGEST_STRIDE = 2.0
 """Upper end of N_s: the longest step is this many S_p."""
 
 RangeSensor: TypeAlias = Callable[[Sequence[float]], Floats]
-"""Free travel to contact (m, at most the range) along each world heading (rad), in one batch."""
+"""Distances (m) along world headings (rad), in one batch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,10 @@ class Observation:
         goal: Centre of the goal (m), world frame, shape (2,).
         goal_radius: Radius of the goal (m).
         range: Longest distance the sensor tells (m): 5·S_p in the paper.
+        radius: Half the width of a detection line (m): the robot's radius and a margin.
         sense: The range sensor: free distance along any world headings.
+        look: The same sensor's single rays: distance from the robot's centre to what stands there,
+            at most ``range + radius``.
         motion: Limits of a body that must turn and brake, or None for the paper's point robot,
             which faces any way at once and stops at once (Eq. 17).
     """
@@ -75,7 +78,9 @@ class Observation:
     goal: tuple[float, float]
     goal_radius: float
     range: float
+    radius: float
     sense: RangeSensor
+    look: RangeSensor
     motion: Motion | None = None
 
 

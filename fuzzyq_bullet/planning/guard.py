@@ -53,6 +53,7 @@ def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Mot
     need = observation.speed * motion.period + motion.way_to_stop(observation.speed)
     for further, length in zip(wanted, free[len(passed) :], strict=True):
         if RESERVE < need > length - RESERVE:
+            reach = 0.0
             break
         reach = min(reach, length - RESERVE)
         heading, ahead = facing + further, length

@@ -1,0 +1,133 @@
+"""A look all around: what is free about a place, and where that is cut off by something."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzyq_bullet.planning.base import Floats, Observation
+
+Point: TypeAlias = tuple[float, float]
+
+RAYS = 120
+"""Thin rays of one look: 3° apart, 6 cm at their far ends."""
+WAYS = 120
+"""Headings whose free distance is told first: 3° apart."""
+FINER = (1.0 / 3.0, 1.0 / 9.0)
+"""Where the free distance is longest or changes much, it is told for headings closer together, in
+two turns: by these parts of the first spacing."""
+JUMP = 0.3
+"""Where the free distance changes by more than this from one heading to the next (m), something
+ends, and what is behind it is hidden; where by less, one boundary goes on."""
+
+TOUCH = 0.02
+"""What is no farther away from the disc than this stops it (m)."""
+CLOSE = 0.005
+"""By how much what stops the disc on both sides must leave too little room to be a corner (m)."""
+
+_STEP = math.tau / WAYS
+_RAY_HEADINGS = np.arange(RAYS) * (math.tau / RAYS)
+_WAY_HEADINGS = np.arange(WAYS) * _STEP
+_TURNS = np.exp(1j * _RAY_HEADINGS)
+"""Headings as complex numbers of length 1, so that a difference of two is one product."""
+_WAY_TURNS = np.exp(-1j * _WAY_HEADINGS)[:, None]
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What was seen from one place.
+
+    Attributes:
+        range: How far the robot sees (m).
+        headings: World headings (rad) in [0, 2π), increasing.
+        lengths: Free distance (m) of the robot's disc along each.
+        gaps: Indices of the headings that lead into a gap: farther than those beside them, and not
+            into a corner, where the disc is stopped on both sides.
+        walls: Lines on which the disc's centre would be stopped (m), shape (W, 2, 2): ends, x and
+            y.
+    """
+
+    range: float
+    headings: list[float]
+    lengths: list[float]
+    gaps: list[int]
+    walls: Floats
+
+    def free(self, heading: float) -> float:
+        """Return the free distance (m) along a heading: the lesser of its two neighbours."""
+        at = bisect_left(self.headings, heading % math.tau)
+        return min(self.lengths[at - 1], self.lengths[at % len(self.lengths)])
+
+
+def look_around(observation: Observation) -> View:
+    """Look in all directions with thin rays, and tell how far the robot's disc could move.
+
+    What a ray met stops the disc where it comes within a detection line's half width of it. What
+    stands beside the robot already, nearer than that, does not stop it from moving past.
+    """
+    distance = observation.look(_RAY_HEADINGS.tolist())
+    met = distance < observation.range + observation.radius
+    hits, distance = _TURNS[met] * distance[met], distance[met]
+    wide_squared = np.minimum(observation.radius, distance - 1e-3) ** 2
+
+    def lengths_along(turns: NDArray[np.complex128]) -> Floats:
+        seen = hits * turns
+        depth = wide_squared - seen.imag**2
+        travel = np.where(
+            (seen.real > 0.0) & (depth > 0.0), seen.real - np.sqrt(np.maximum(depth, 0.0)), np.inf
+        )
+        least: Floats = travel.min(axis=1, initial=observation.range)
+        return np.maximum(least, 0.0)
+
+    headings, lengths = _WAY_HEADINGS, lengths_along(_WAY_TURNS)
+    for part in FINER:
+        edge = np.abs(lengths - np.roll(lengths, -1)) > JUMP
+        worth = np.flatnonzero(_peaks(lengths) | edge | np.roll(edge, 1))
+        finer = (headings[worth, None] + part * _STEP * np.array([-2, -1, 1, 2])).ravel() % math.tau
+        headings, first = np.unique(np.concatenate([headings, finer]).round(6), return_index=True)
+        lengths = np.concatenate([lengths, lengths_along(np.exp(-1j * finer)[:, None])])[first]
+
+    directions = np.column_stack([np.cos(headings), np.sin(headings)])
+    ends = np.array(observation.position) + lengths[:, None] * directions
+    following = np.roll(np.arange(lengths.size), -1)
+    stopped = lengths < observation.range
+    joined = stopped & stopped[following] & (np.abs(lengths - lengths[following]) <= JUMP)
+    walls = np.stack([ends[joined], ends[following[joined]]], axis=1)
+    return View(
+        observation.range,
+        headings.tolist(),
+        lengths.tolist(),
+        _gaps(hits, headings, lengths, observation.radius),
+        walls,
+    )
+
+
+def _gaps(
+    hits: NDArray[np.complex128], headings: Floats, lengths: Floats, radius: float
+) -> list[int]:
+    """Return the indices of those peaks at whose ends the disc is not stopped on both sides.
+
+    Args:
+        hits: What the rays met, seen from the robot (m), as complex numbers.
+        headings: World headings (rad).
+        lengths: Free distance (m) along each.
+        radius: Radius of the disc (m).
+    """
+    gaps = []
+    for k in np.flatnonzero(_peaks(lengths)).tolist():
+        around = hits * np.exp(-1j * headings[k]) - lengths[k]
+        touched = around[np.abs(around) < radius + TOUCH]
+        left, right = touched[touched.imag > 0.0], touched[touched.imag <= 0.0]
+        between = np.abs(left[:, None] - right).min(initial=np.inf)
+        if between > 2.0 * radius - CLOSE:
+            gaps.append(k)
+    return gaps
+
+
+def _peaks(lengths: Floats) -> NDArray[np.bool_]:
+    return (lengths > np.roll(lengths, 1)) & (lengths >= np.roll(lengths, -1))
