@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import shutil
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from fuzzyq_bullet.errors import UserError
@@ -87,5 +87,7 @@ def _part(path: Path) -> Path:
 def _remove(folder: Path) -> None:
     for _ in range(3):  # something may still have been written while the first was at work
         shutil.rmtree(folder, ignore_errors=True)
-        if not folder.exists():
-            return
+        with suppress(OSError):  # a name too long, which never was made
+            if folder.exists():
+                continue
+        return
