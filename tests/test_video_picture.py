@@ -12,10 +12,14 @@ import pytest
 from PIL import Image
 from synthetic import drive, modes, scenario
 
+from fuzzyq_bullet.fuzzy.paper import RULES as PAPER_RULES
 from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
-from fuzzyq_bullet.trajectory import Collision
+from fuzzyq_bullet.trajectory import Collision, Decisions, Ticks
 from fuzzyq_bullet.video import frame, paint, style
+from fuzzyq_bullet.video.avoidance import Avoidance
+from fuzzyq_bullet.video.map import Map
 from fuzzyq_bullet.video.record import moments
+from fuzzyq_bullet.video.rules import Rules
 from fuzzyq_bullet.video.scene import Scene
 from fuzzyq_bullet.video.sensing import sensed_at
 from fuzzyq_bullet.video.shown import Shown
@@ -266,20 +270,181 @@ def test_the_robot_can_be_seen_in_any_arena(all_runs: dict[str, Trajectory]) -> 
             assert count(pixels(picture, rect), style.ROBOT, 30) > 12, (name, rect)
 
 
+def map_at(run: Trajectory, time: float, *before: float) -> np.ndarray[Any, Any]:
+    """Return the map at a time (s), drawn at once or after moments before."""
+    drawn, timeline = Map(run), Timeline(run)
+    image = Image.new("RGB", (style.WIDTH, style.HEIGHT), style.PAGE)
+    for when in (*before, time):
+        moment = timeline.at(when)
+        patch = drawn.draw(moment, sensed_at(run, moment.decision))
+        if patch is not None:
+            image.paste(patch.image, (patch.x, patch.y))
+    return pixels(image, MAP)
+
+
+def aimed(run: Trajectory, target: float) -> Trajectory:
+    """Return the record with another target."""
+    everywhere = np.full_like(run.decisions.target, target)
+    return replace(run, decisions=replace(run.decisions, target=everywhere))
+
+
 def test_the_target_is_marked_where_there_is_one(all_runs: dict[str, Trajectory]) -> None:
+    run = all_runs["following"]
     shown, plain = (
-        count(pixels(frame(all_runs[name], 2.0), MAP), style.TARGET, 40)
-        for name in ("following", "blank")
+        count(map_at(one, 2.0), style.TARGET, 40) for one in (run, aimed(run, math.nan))
     )
-    assert shown > 15
-    assert plain == 0
+    assert shown > plain + 15
+    assert count(map_at(all_runs["blank"], 2.0), style.TARGET, 40) == 0
 
 
 def test_a_target_beyond_the_walls_is_not_marked(all_runs: dict[str, Trajectory]) -> None:
     run = all_runs["following"]
-    target = np.full_like(run.decisions.target, 10.05)
-    beyond = replace(run, decisions=replace(run.decisions, target=target))
-    assert count(pixels(frame(beyond, 2.0), MAP), style.TARGET, 40) == 0
+    assert (map_at(aimed(run, 10.05), 2.0) == map_at(aimed(run, math.nan), 2.0)).all()
+
+
+TRAP = (
+    Box(shape="box", position=(4.0, 7.2), size=(0.2, 1.6)),
+    Box(shape="box", position=(3.3, 8.0), size=(1.6, 0.2)),  # touches the first
+    Cylinder(shape="cylinder", position=(4.5, 7.3), radius=0.15),  # near, and touches none
+    Cylinder(shape="cylinder", position=(8.0, 8.0), radius=0.4),
+)
+
+
+@pytest.fixture(scope="module")
+def freed() -> Trajectory:
+    """Return a drive that breaks out of a trap after 2 s, goes round it, and is free after 4 s."""
+    world = scenario(0, 0, start=(3.2, 6.0), goal=(9.0, 2.0))
+    plain = drive(world, seconds=6.0, outcome="timeout")
+    moved = modes(plain, (0, 1 / 3), (1, 0.1), (2, 1 / 3 - 0.1))
+    # The same record among obstacles: only what is drawn around the drive changes.
+    return replace(moved, scenario=world.model_copy(update={"obstacles": TRAP}))
+
+
+def test_what_the_robot_goes_round_is_outlined_with_all_that_touches_it(freed: Trajectory) -> None:
+    facts = freed.decisions
+    routine = replace(freed, decisions=replace(facts, mode=np.zeros_like(facts.mode)))
+    spot = Map(freed).spot
+    for time, shown in ((1.0, False), (3.0, True), (5.0, False)):
+        outlined, plain = (map_at(one, time) for one in (freed, routine))
+        for x0, y0, x1, y1 in ((3.8, 6.3, 4.2, 7.8), (2.4, 7.8, 3.7, 8.2), (7.4, 7.4, 8.6, 8.6)):
+            (left, bottom), (right, top) = spot([(x0, y0), (x1, y1)]).round().astype(int).tolist()
+            here = np.s_[top:bottom, left:right]
+            more = count(outlined[here], style.TARGET, 60) - count(plain[here], style.TARGET, 60)
+            assert (more > 60) == (shown and x0 < 7), (time, x0, more)
+        if shown:  # what lies within, also where the two meet, keeps its colour
+            (left, bottom), (right, top) = spot([(3.95, 6.5), (4.05, 8.0)]).round().astype(int)
+            here = np.s_[top:bottom, left:right]
+            assert count(outlined[here], style.OBSTACLE) == count(plain[here], style.OBSTACLE) > 50
+    avoidance = Avoidance(freed)
+    group = avoidance.group_at(int(np.flatnonzero(facts.mode == 2)[0]))
+    assert group is not None
+    assert avoidance.members(group) == list(TRAP[:2])
+
+
+@pytest.mark.parametrize(
+    ("start", "ends"),
+    [
+        ((0.5, 5.0), [(0, 0), (0, 10)]),
+        ((5.0, 9.5), [(0, 10), (10, 10)]),
+        ((9.5, 5.0), [(10, 10), (10, 0)]),
+        ((5.0, 0.5), [(10, 0), (0, 0)]),
+    ],
+)
+def test_a_wall_that_the_robot_goes_along_gets_a_line(
+    start: tuple[float, float], ends: list[tuple[int, int]]
+) -> None:
+    run = modes(drive(scenario(0, 0, start=start, goal=(5.0, 5.0)), seconds=0.5), (2, 1.0))
+    avoidance = Avoidance(run)
+    group = avoidance.group_at(0)
+    assert group is not None
+    wall = avoidance.wall(group)
+    assert wall is not None
+    assert wall.tolist() == [list(end) for end in ends]
+    x, y = Map(run).spot([np.mean(ends, axis=0)])[0].round().astype(int).tolist()
+    around = map_at(run, 0.2)[y - 6 : y + 6, x - 6 : x + 6]
+    assert count(around, style.TARGET, 40) >= 24
+
+
+def test_what_is_outlined_changes_only_for_something_clearly_nearer() -> None:
+    world = scenario(0, 0, size=(10.0, 10.0), start=(5.0, 5.0), goal=(9.0, 5.0))
+    posts = tuple(
+        Cylinder(shape="cylinder", position=(5.0, y), radius=0.2) for y in (6.0, 3.96, 4.2)
+    )
+    run = modes(drive(world, seconds=0.0), (2, 1.0))
+    for kept, expected in ((posts[:2], 0), (posts[::2], 1)):
+        one = replace(run, scenario=world.model_copy(update={"obstacles": kept}))
+        assert Avoidance(one).group_at(0) == expected
+    # From y = 5.0 the first post is nearer; at 4.96 the second is, by 6 cm, at 4.9 by 18 cm.
+    facts, ticks = run.decisions, run.ticks
+    three = {name: np.repeat(column, 3, axis=0) for name, column in vars(facts).items()}
+    three["tick"] = np.arange(3)
+    states = {name: np.repeat(column, 3, axis=0) for name, column in vars(ticks).items()}
+    states["time"] = np.arange(3) / 4
+    states["position"] = np.array([(5.0, 5.0), (5.0, 4.95), (5.0, 4.9)])
+    several = replace(
+        run,
+        scenario=world.model_copy(update={"obstacles": posts[:2]}),
+        ticks=Ticks(**states),
+        decisions=Decisions(**three),
+    )
+    avoidance = Avoidance(several)
+    assert [avoidance.group_at(k) for k in range(3)] == [0, 0, 1]
+
+
+def test_where_a_way_out_began_and_ended_stays_marked_on_the_map(freed: Trajectory) -> None:
+    marks = Avoidance(freed).marks
+    assert [mark.begins for mark in marks] == [True, False]
+    names = freed.decisions.mode.tolist()
+    assert [mark.decision for mark in marks] == [names.index(1), len(names) - names[::-1].index(2)]
+    places = [Map(freed).spot([mark.point])[0].round().astype(int).tolist() for mark in marks]
+    seen, picture = [], map_at(freed, 0.0)
+    for time in (1.5, 3.5, 5.9):
+        picture = map_at(freed, time)
+        for x, y in places:
+            part = picture[y - 9 : y + 9, x - 9 : x + 9]
+            seen.append(count(part, style.TARGET, 50) > 25)
+    assert seen == [False, False, True, False, True, True]
+    # A dot is full, a ring is not.
+    dot, ring = (count(picture[y - 2 : y + 2, x - 2 : x + 2], style.TARGET, 50) for x, y in places)
+    assert dot > 10
+    assert ring == 0
+
+
+def test_marks_that_would_cover_each_other_are_one() -> None:
+    run = drive(scenario(0, 0), seconds=3.0, outcome="timeout")
+    mode = np.arange(len(run.decisions.mode)) % 2  # breaks out anew at every other decision
+    marks = Avoidance(replace(run, decisions=replace(run.decisions, mode=mode))).marks
+    assert 2 < len(marks) < mode.sum()
+    assert min(math.dist(a.point, b.point) for a, b in combinations(marks, 2)) > 0.05
+
+
+def test_marks_and_outline_drawn_step_by_step_are_those_of_one_frame(freed: Trajectory) -> None:
+    for until in (3.0, 5.9):
+        steps = np.arange(0.0, until, 1 / 30).tolist()
+        differs = np.abs(map_at(freed, until, *steps) - map_at(freed, until)).max(axis=-1) > 60
+        assert differs.sum() <= 30, (until, differs.sum())
+
+
+def test_rules_that_are_not_asked_are_grey(freed: Trajectory) -> None:
+    def table(*times: float) -> np.ndarray[Any, Any]:
+        panel = Rules(freed.decisions, PAPER_RULES["corrected"], math.radians(45.0))
+        image = Image.new("RGB", (style.WIDTH, style.HEIGHT), style.PAGE)
+        for time in times:
+            patch = panel.draw(Timeline(freed).at(time).decision)
+            if patch is not None:
+                image.paste(patch.image, (patch.x, patch.y))
+        return pixels(image, RULES)
+
+    def colourful(image: np.ndarray[Any, Any]) -> int:
+        return int((np.ptp(image, axis=-1) > 40).sum())
+
+    asked, greyed = table(1.0), table(3.0)
+    assert colourful(asked) > 500
+    assert colourful(greyed) == 0
+    assert (asked[:28] != greyed[:28]).any(), "the title must say so"
+    # Step by step too: all of it turns grey, and lights up again.
+    assert (table(1.0, 3.0) == greyed).all()
+    assert (table(3.0, 1.0) == asked).all()
 
 
 def test_the_obstacle_that_was_hit_is_outlined_on_the_map(

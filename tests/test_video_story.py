@@ -25,7 +25,16 @@ from fuzzyq_bullet.video.scene import Scene
 from fuzzyq_bullet.video.senses import Senses
 from fuzzyq_bullet.video.shown import HOLD, Shown
 from fuzzyq_bullet.video.stage import Stage
-from fuzzyq_bullet.video.story import ALIKE, STRAIGHT, is_clear, off_goal_line, reason, struck
+from fuzzyq_bullet.video.story import (
+    ALIKE,
+    STRAIGHT,
+    is_asked,
+    is_clear,
+    off_goal_line,
+    reason,
+    side_of,
+    struck,
+)
 from fuzzyq_bullet.video.timeline import NO_DECISION, Timeline
 from fuzzyq_bullet.video.words import Story
 
@@ -102,12 +111,60 @@ def test_other_modes_are_named() -> None:
     near: dict[str, Any] = {"lengths": (0.9, 0.1, 0.2), "distance": 0.5, "difference": 3.5}
     assert said(heading=1.0, mode=1, **near) == "Blocked ahead: breaks out to the left"
     assert said(heading=-1.0, mode=1).startswith("Comes no nearer: breaks out to the right")
-    x, y = drive(seconds=0.0).ticks.position[0]
-    right, left = (x + 0.1, y - 0.4), (x + 0.1, y + 0.4)
-    assert said(mode=2, target=right) == "Follows the obstacle on its right"
-    assert said(mode=2, target=left) == "Follows the obstacle on its left"
-    assert said(mode=2) == "Follows the obstacle's edge"
-    assert said(mode=2, target=left, step=0.0, reach=0.0) == "Finds no way on: stops"
+
+
+def goes(facing: float = 0.0, *, speed: float = 0.0, **columns: Any) -> str:
+    """Return the sentence of a robot on its way to an exit."""
+    run = told(facing, **{"mode": 2, "target": (2.0, 5.0), "step": 0.3, "reach": 1.0, **columns})
+    ticks = replace(run.ticks, speed=np.full_like(run.ticks.speed, speed))
+    return reason(replace(run, ticks=ticks), 0)
+
+
+def test_on_the_way_to_an_exit_the_side_of_the_goal_line_is_told() -> None:
+    for heading in (0.1, 1.0, math.radians(109)):
+        assert goes(heading=heading) == "Goes round the obstacle by the left"
+        assert goes(heading=-heading) == "Goes round the obstacle by the right"
+    for heading in (math.radians(111), math.pi, -math.radians(111)):
+        assert goes(heading=heading) == "Goes back to a way not tried yet"
+    assert goes(heading=math.radians(4)) == "Goes on to where the way may lead on"
+    # The side is that of the line to the goal, wherever the robot faces and the exit lies.
+    assert goes(2.0, heading=1.0, target=(2.0, -5.0)).endswith("by the left")
+
+
+def test_a_robot_that_cannot_turn_on_its_way_says_so() -> None:
+    assert goes(1.0, heading=-1.0, reach=0.0) == "Turns on the spot: no room for a wide turn"
+    assert goes(1.0, heading=0.9, reach=0.0, speed=0.6) == "Brakes first: no room for a wide turn"
+    assert goes(1.0, heading=1.0, reach=0.0).startswith("Goes round")
+    assert goes(1.0, heading=-1.0, reach=0.1).startswith("Goes round")
+
+
+@pytest.mark.parametrize("mode", [1, 2])
+def test_a_robot_without_a_way_on_says_so_and_one_that_only_waits_does_not(mode: int) -> None:
+    stopped: dict[str, Any] = {"mode": mode, "step": 0.0, "reach": 0.0}
+    assert goes(**stopped, target=(math.nan, math.nan)) == "Finds no way on: stops"
+    assert "stops" not in goes(1.0, **stopped)
+
+
+def test_both_modes_of_a_run_in_a_trap_are_told_truly(trapped: Trajectory) -> None:
+    facts = trapped.decisions
+    names = [MODES[k] for k in facts.mode.tolist()]
+    assert names.count("following") > 10
+    for k, mode in enumerate(names):
+        sentence, lean = reason(trapped, k), off_goal_line(facts, k)
+        assert ("breaks out" in sentence) == (mode == "breakout")
+        assert is_asked(facts, k) == (mode == "routine")
+        if found := re.search(r"by the (left|right)", sentence):
+            assert mode == "following"
+            assert STRAIGHT <= lean * (1 if found[1] == "left" else -1) <= math.radians(110)
+            assert side_of(trapped, k) == (1 if found[1] == "left" else -1)
+        if "Goes back" in sentence:
+            assert mode == "following"
+            assert abs(lean) > math.radians(110)
+            assert side_of(trapped, k) == 0
+        if "Brakes" in sentence or "Turns on the spot" in sentence:
+            assert facts.reach[k] == 0.0
+    said_of = {reason(trapped, k) for k, mode in enumerate(names) if mode == "following"}
+    assert {"Goes back to a way not tried yet"} < said_of
 
 
 def test_a_planner_that_explains_nothing() -> None:
@@ -123,6 +180,11 @@ def test_a_planner_that_explains_nothing() -> None:
 @pytest.fixture(scope="module")
 def real() -> Trajectory:
     return episode.run(load_scenario("boxes"))
+
+
+@pytest.fixture(scope="module")
+def trapped() -> Trajectory:
+    return episode.run(load_scenario("u-shape"))
 
 
 @pytest.mark.parametrize("speed", [1.0, 4.0])

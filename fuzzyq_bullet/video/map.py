@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.film import Patch
-from fuzzyq_bullet.video.marks import cross, diamond, grid_step
+from fuzzyq_bullet.video.marks import began, cross, diamond, grid_step, left_off
 from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, extent, footprint
 from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed
 from fuzzyq_bullet.video.style import MAP
@@ -28,6 +29,8 @@ Floats: TypeAlias = NDArray[np.float64]
 _PADDING = 12
 _LINE = 3.6
 """Width of a detection line (pixels)."""
+_OUTLINE = 2.4
+"""Width of the line about what the robot goes round (pixels)."""
 _LEAST_ROBOT = 6.0
 """The robot is never drawn with a smaller radius (pixels)."""
 
@@ -42,8 +45,11 @@ class Map:
         self._middle = ((x0 + x1) / 2, (y0 + y1) / 2)
         self._area = (x0, y0, x1, y1)
         positions = trajectory.ticks.position
+        self._avoidance = Avoidance(trajectory)
         self._trail = paint.Trail(self._background(trajectory), positions, self.spot)
         self._struck = self._outline_struck(trajectory)
+        self._avoided: int | None = None
+        self._marked = 0
         self._steady = Steady(self._scale)
         self._sensed: Sensed | None = None
         self._changed: paint.Box | None = (0, 0, *MAP.size)
@@ -60,7 +66,7 @@ class Map:
         if not self._steady.moved(moment) and sensed is self._sensed:
             return None
         self._sensed = sensed
-        grown = self._trail.follow(moment.tick)
+        grown = paint.joined([self._trail.follow(moment.tick), self._decorate(moment.decision)])
         centre = self.spot([moment.position])[0]
         radius = max(_LEAST_ROBOT, ROBOT_RADIUS * self._scale)
         strokes = [] if sensed is None else [self._line(sensed, *line) for line in sensed.lines]
@@ -95,6 +101,47 @@ class Map:
             cross(image, box, self.spot([hit])[0], 10.0)
         return Patch(MAP.x + box[0], MAP.y + box[1], image)
 
+    def _decorate(self, decision: int) -> paint.Box | None:
+        """Mark where ways out began and ended so far, and outline what the robot goes round now."""
+        avoidance, changed = self._avoidance, []
+        while self._marked < len(avoidance.marks):
+            mark = avoidance.marks[self._marked]
+            if mark.decision > decision:
+                break
+            self._marked += 1
+            draw = began if mark.begins else left_off
+            changed.append(self._trail.lay_above(draw(self.spot([mark.point])[0], MAP.size)))
+        avoided = avoidance.group_at(decision)
+        if avoided != self._avoided:
+            self._avoided = avoided
+            outline = None if avoided is None else self._outline(avoided)
+            changed.append(self._trail.lay_below(outline))
+        return paint.joined(changed)
+
+    def _outline(self, group: int) -> paint.Inked | None:
+        """Return a line about a group of obstacles, or along a wall, as far as they are seen."""
+        x0, y0, x1, y1 = self._area
+        seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+        wall = self._avoidance.wall(group)
+        parts = [
+            self.spot(clipped(footprint(one, corners_for(extent(one) * self._scale)), seen))
+            for one in self._avoidance.members(group)
+        ]
+
+        def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            width = _OUTLINE * at.factor
+            if wall is not None:
+                paint.polyline(pen, at(self.spot(wall)), 255, 1.4 * width)
+            for part in parts:
+                paint.polyline(pen, at([*part, *part[:2]]), 255, 2 * width)
+            for part in parts:  # only the outside half stays, and nothing where two overlap
+                if len(part) >= 3:
+                    pen.polygon(at(part), fill=0)
+
+        points = np.concatenate([*parts, np.empty((0, 2)) if wall is None else self.spot(wall)])
+        drawn = paint.layer(points, _OUTLINE + 2, MAP.size, draw)
+        return None if drawn is None else (style.TARGET, drawn)
+
     def _line(self, sensed: Sensed, heading: float, length: float) -> Floats:
         """Return a detection line from the robot's rim to where the robot would touch something."""
         way = np.array((math.cos(heading), math.sin(heading)))
@@ -124,6 +171,8 @@ class Map:
         if field[3] <= MAP.height - 18 or field[0] > 100:
             note = (14, MAP.height - 6)
             paint.write(image, note, f"squares of {step:g} m", style.MUTED, 14)
+        if field[3] <= MAP.height - 18 and self._avoidance.marks:
+            _legend(image)
 
         def ground(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
             pen.rectangle(at([low, high]), fill=255)
@@ -184,6 +233,20 @@ def _draw_ring(image: Image.Image, box: paint.Box, outline: Floats) -> None:
         paint.polyline(pen, at([*outline, outline[0]]), 255, 3.0 * at.factor)
 
     paint.stamp(image, box, outline, 4, style.DANGER, draw)
+
+
+def _legend(image: Image.Image) -> None:
+    """Say what the marks of the ways out are, at the bottom right."""
+    x, y = MAP.width - 14.0, MAP.height - 6
+    for text, draw in (("routine", left_off), ("breakout", began), ("aim", None)):
+        paint.write(image, (x, y), text, style.MUTED, 14, align="r")
+        x -= style.text_width(text, 14) + 12
+        if draw is None:
+            diamond(image, (0, 0, *MAP.size), (x, y - 5), 6.0)
+        else:
+            for colour, drawn in draw((x, y - 5), MAP.size):
+                drawn.lay(image, (0, 0, *MAP.size), colour)
+        x -= 20
 
 
 def _robot(

@@ -10,6 +10,8 @@ import numpy as np
 from fuzzyq_bullet.video import paint, style
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
     from PIL import Image, ImageDraw
 
@@ -24,6 +26,42 @@ def diamond(image: Image.Image, box: paint.Box, at: ArrayLike, size: float) -> N
         pen.line(scaled([*shape, shape[0], shape[1]]), 255, 2 * scaled.factor, joint="curve")
 
     paint.stamp(image, box, shape, 3, style.TARGET, draw)
+
+
+def began(at: ArrayLike, size: tuple[int, int]) -> list[paint.Inked]:
+    """Return the mark of the place where a way out began, in a picture of ``size``: a dot."""
+    return _discs(at, size, ((style.PAGE, 6.0, 0.0), (style.TARGET, 4.6, 0.0)))
+
+
+def left_off(at: ArrayLike, size: tuple[int, int]) -> list[paint.Inked]:
+    """Return the mark of the place where the routine part went on again: a ring."""
+    rim = (style.PAGE, 8.4, 5.2)
+    return _discs(at, size, (rim, (style.TARGET, 7.2, 2.4)))
+
+
+def _discs(
+    at: ArrayLike, size: tuple[int, int], discs: Sequence[tuple[style.Colour, float, float]]
+) -> list[paint.Inked]:
+    """Return discs as layers: colour, radius, and width of the ring if they are rings."""
+    found = []
+    for colour, radius, width in discs:
+
+        def draw(
+            pen: ImageDraw.ImageDraw,
+            scaled: paint.Scaled,
+            radius: float = radius,
+            width: float = width,
+        ) -> None:
+            around = scaled.disc(at, radius)
+            if width:
+                pen.ellipse(around, outline=255, width=round(width * scaled.factor))
+            else:
+                pen.ellipse(around, fill=255)
+
+        drawn = paint.layer(np.atleast_2d(at), radius + 1, size, draw)
+        if drawn is not None:
+            found.append((colour, drawn))
+    return found
 
 
 def cross(image: Image.Image, box: paint.Box, at: ArrayLike, size: float) -> None:

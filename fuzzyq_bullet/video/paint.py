@@ -71,6 +71,10 @@ class Layer(NamedTuple):
         image.paste(colour, (self.box[0] - box[0], self.box[1] - box[1]), self.cover)
 
 
+Inked: TypeAlias = "tuple[Colour, Layer]"
+"""A layer and its colour."""
+
+
 def layer(
     extent: ArrayLike,
     margin: float,
@@ -245,6 +249,23 @@ class Trail:
         self._allowed = allowed
         self._line = Image.new("L", background.size, 0)
         self._tick = 0
+        self._below: Inked | None = None
+        self._above: list[Inked] = []
+
+    def lay_below(self, shape: Inked | None) -> Box | None:
+        """Show one shape beneath the way, in place of the last; return the box that changed."""
+        boxes = [one[1].box for one in (self._below, shape) if one is not None]
+        self._below = shape
+        for box in boxes:
+            self._compose(box)
+        return joined(boxes)
+
+    def lay_above(self, shapes: Sequence[Inked]) -> Box | None:
+        """Show further shapes on top of the way for good; return the box that changed."""
+        self._above += shapes
+        for _, drawn in shapes:
+            self._compose(drawn.box)
+        return joined(drawn.box for _, drawn in shapes)
 
     def follow(self, tick: int) -> Box | None:
         """Draw the way up to a tick and return the box that changed.
@@ -270,10 +291,17 @@ class Trail:
         # The greater of the two, not the sum: overlapping ends must not show.
         line = ImageChops.lighter(piece.cover, self._line.crop(piece.box))
         self._line.paste(line, piece.box)
-        patch = self._background.crop(piece.box)
-        patch.paste(style.PATH, mask=line)
-        self.image.paste(patch, piece.box)
+        self._compose(piece.box)
         return piece.box
+
+    def _compose(self, box: Box) -> None:
+        patch = self._background.crop(box)
+        if self._below is not None:
+            self._below[1].lay(patch, box, self._below[0])
+        patch.paste(style.PATH, mask=self._line.crop(box))
+        for colour, drawn in self._above:
+            drawn.lay(patch, box, colour)
+        self.image.paste(patch, box)
 
 
 def card(rect: Rect, title: str = "") -> Image.Image:

@@ -1,4 +1,7 @@
-"""Panel 3: the rule table, each rule an arrow of its turn and step, lit as strongly as it fires."""
+"""Panel 3: the rule table, each rule an arrow of its turn and step, lit as strongly as it fires.
+
+Where a way out decides in place of the controller the table is grey.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ from PIL import Image, ImageDraw
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.film import Patch
 from fuzzyq_bullet.video.meaning import NEAR_WORDS
+from fuzzyq_bullet.video.story import is_asked
 from fuzzyq_bullet.video.style import RULES
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
@@ -24,6 +28,10 @@ _GAP = 2
 _LEVELS = 32
 """Steps of brightness; finer ones cannot be told apart."""
 _UNLIT: style.Colour = (38, 45, 56)
+_GREY: style.Colour = (84, 92, 104)
+"""A rule that fires fully, and is not asked."""
+_TITLES = {True: "3  RULES THAT FIRE", False: "3  RULES (NOT ASKED)"}
+_TITLE: paint.Box = (10, 4, 264, 26)
 
 
 class Rules:
@@ -45,14 +53,15 @@ class Rules:
             [_arrow(base, row, column, turn_unit) for column in range(self._columns)]
             for row in range(self._rows)
         ]
-        self._image = paint.card(RULES, "3  RULES THAT FIRE")
+        self._image = paint.card(RULES)
         right = _LEFT + self._columns * _CELL_WIDTH - _GAP
         paint.write(self._image, (_LEFT, 43), "left freer", style.MUTED, 15)
         paint.write(self._image, (right, 43), "right freer", style.MUTED, 15, align="r")
         for row, words in enumerate(NEAR_WORDS[: self._rows]):
             y = _TOP + row * _CELL_HEIGHT + _CELL_HEIGHT // 2 + 4
             paint.write(self._image, (_LEFT - 8, y), words, style.MUTED, 15, align="r")
-        self._shown: dict[tuple[int, int], tuple[int, bool]] = {}
+        self._shown: dict[tuple[int, int], tuple[int, bool, bool]] = {}
+        self._asked: bool | None = None
         self._decision: int | None = None
 
     def draw(self, decision: int) -> Patch | None:
@@ -61,14 +70,20 @@ class Rules:
             return None
         self._decision = decision
         strengths = np.zeros((self._rows, self._columns))
+        asked = True
         if decision != NO_DECISION:
+            asked = is_asked(self._decisions, decision)
             strengths = np.clip(np.nan_to_num(self._decisions.rules[decision]), 0.0, 1.0)
         strongest = float(strengths.max())
         fresh, changed = not self._shown, []
+        if asked != self._asked:
+            self._asked = asked
+            changed.append(self._draw_title(_TITLES[asked]))
         for row, cells in enumerate(strengths.tolist()):
             for column, strength in enumerate(cells):
                 # The root lifts weak rules into sight; the order of brightness stays.
-                look = (round(math.sqrt(strength) * _LEVELS), strength == strongest > 0.0)
+                strong = strength == strongest > 0.0 and asked
+                look = (round(math.sqrt(strength) * _LEVELS), strong, asked)
                 if self._shown.get((row, column)) != look:
                     self._shown[row, column] = look
                     changed.append(self._draw_cell(row, column, *look))
@@ -77,15 +92,24 @@ class Rules:
         box = paint.joined(changed)
         return None if box is None else paint.patch_of(RULES, self._image, box)
 
-    def _draw_cell(self, row: int, column: int, level: int, strongest: bool) -> paint.Box:
+    def _draw_title(self, title: str) -> paint.Box:
+        ImageDraw.Draw(self._image).rectangle(_TITLE, style.CARD)
+        paint.write(self._image, (12, 20), title, style.MUTED, 16, bold=True)
+        return _TITLE
+
+    def _draw_cell(
+        self, row: int, column: int, level: int, strongest: bool, asked: bool
+    ) -> paint.Box:
         x = _LEFT + (self._columns - 1 - column) * _CELL_WIDTH
         y = _TOP + row * _CELL_HEIGHT
         lit = level / _LEVELS
         box = (x, y, x + _CELL_WIDTH - _GAP - 1, y + _CELL_HEIGHT - _GAP - 1)
         outline = style.TEXT if strongest else None
-        fill = style.mixed(_UNLIT, style.HEAT, lit)
+        fill = style.mixed(_UNLIT, style.HEAT if asked else _GREY, lit)
         ImageDraw.Draw(self._image).rectangle(box, fill, outline, 2)
         ink = style.PAGE if lit > 0.45 else style.mixed(style.FAINT, style.TEXT, lit)
+        if not asked:
+            ink = style.FAINT
         self._image.paste(ink, (x, y), self._arrows[row][column])
         return box[0], box[1], box[2] + 1, box[3] + 1
 

@@ -20,6 +20,12 @@ _HELD_BACK = math.radians(2.0)
 """A heading that differs by more from the controller's (rad) is not the controller's."""
 _STANDS = 1e-6
 """A shorter step (m) is none."""
+_BACK = math.radians(110.0)
+"""A heading farther than this from the line to the goal leads back (rad)."""
+_FACING = math.radians(2.0)
+"""A robot this near to its new heading (rad) need not turn on the spot."""
+_SLOW = 0.05
+"""A slower robot (m/s) is on the spot."""
 _MOST_ROOM = 5.0 - 1e-9
 """d, in steps, where nothing was met."""
 
@@ -30,36 +36,29 @@ def reason(trajectory: Trajectory, index: int) -> str:
         return "Waits for its first decision"
     decisions = trajectory.decisions
     mode = MODES[int(decisions.mode[index])]
+    if mode == "routine":
+        return _steers(trajectory, index)
+    if not math.isfinite(float(decisions.target[index].sum())) and (
+        float(decisions.step[index]) < _STANDS
+    ):
+        return "Finds no way on: stops"
     if mode == "breakout":
         return _breaks_out(decisions, index, _turn(trajectory, index))
-    if mode == "following":
-        if float(decisions.step[index]) < _STANDS and float(decisions.reach[index]) < _STANDS:
-            return "Finds no way on: stops"
-        side = side_of(trajectory, index)
-        if side == 0:
-            return "Follows the obstacle's edge"
-        return f"Follows the obstacle on its {'right' if side > 0 else 'left'}"
-    return _steers(trajectory, index)
+    return _goes_on(trajectory, index)
 
 
 def side_of(trajectory: Trajectory, index: int) -> int:
-    """Return which way a decision leads: 1 to the left, −1 to the right, 0 neither.
+    """Return on which side of the line to the goal a decision leads: 1 left, −1 right, 0 neither.
 
-    It is the side of the line to the goal or, where a boundary is followed, the side away from it.
+    The way back is on neither side.
     """
-    decisions = trajectory.decisions
-    if MODES[int(decisions.mode[index])] == "following":
-        x, y = trajectory.ticks.position[int(decisions.tick[index])].tolist()
-        target_x, target_y = decisions.target[index].tolist()
-        if not math.isfinite(target_x + target_y):
-            return 0
-        bearing = math.atan2(target_y - y, target_x - x)
-        aside = math.remainder(bearing - float(decisions.heading[index]), math.tau)
-        return 1 if aside < 0.0 else -1
-    lean = off_goal_line(decisions, index)
-    if not math.isfinite(lean):
-        lean = _turn(trajectory, index)
-    return 0 if abs(lean) < STRAIGHT else (1 if lean > 0.0 else -1)
+    lean = _lean(trajectory, index)
+    return 0 if not STRAIGHT <= abs(lean) <= _BACK else (1 if lean > 0.0 else -1)
+
+
+def is_asked(decisions: Decisions, index: int) -> bool:
+    """Whether the controller's rules had a say in a decision, and not a way out in their place."""
+    return MODES[int(decisions.mode[index])] == "routine"
 
 
 def off_goal_line(decisions: Decisions, index: int) -> float:
@@ -94,6 +93,28 @@ def _turn(trajectory: Trajectory, index: int) -> float:
     decisions = trajectory.decisions
     facing = float(trajectory.ticks.heading[int(decisions.tick[index])])
     return math.remainder(float(decisions.heading[index]) - facing, math.tau)
+
+
+def _lean(trajectory: Trajectory, index: int) -> float:
+    """Return how far left of the goal line a decision leads (rad); else from where it faced."""
+    lean = off_goal_line(trajectory.decisions, index)
+    return lean if math.isfinite(lean) else _turn(trajectory, index)
+
+
+def _goes_on(trajectory: Trajectory, index: int) -> str:
+    """Return where the robot goes that is on its way from exit to exit."""
+    decisions = trajectory.decisions
+    if float(decisions.reach[index]) <= 0.0:
+        if float(trajectory.ticks.speed[int(decisions.tick[index])]) > _SLOW:
+            return "Brakes first: no room for a wide turn"
+        if abs(_turn(trajectory, index)) > _FACING:
+            return "Turns on the spot: no room for a wide turn"
+    lean = _lean(trajectory, index)
+    if abs(lean) < STRAIGHT:
+        return "Goes on to where the way may lead on"
+    if abs(lean) > _BACK:
+        return "Goes back to a way not tried yet"
+    return f"Goes round the obstacle by the {_side(lean)}"
 
 
 def _breaks_out(decisions: Decisions, index: int, turn: float) -> str:
