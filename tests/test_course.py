@@ -1,0 +1,189 @@
+"""A way that is remembered is driven: by the farthest point in view, and exactly where narrow."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fuzzyq_bullet.geometry import Field, wrap_angle
+from fuzzyq_bullet.planning import Motion, Observation
+from fuzzyq_bullet.planning.course import PATIENCE, Course
+
+MOTION = Motion(
+    max_speed=0.6,
+    max_turn_rate=2.0,
+    acceleration=1.0,
+    turn_acceleration=6.0,
+    period=0.25,
+    radius=0.2,
+    margin=0.02,
+)
+
+
+def observe(field, here=(0.0, 0.0), *, heading=0.0, time=0.0, motion=MOTION):
+    def sense(headings):
+        return field.free_distance(here, headings, 0.22, 1.0)
+
+    return Observation(
+        time=time,
+        position=here,
+        heading=heading,
+        speed=0.0,
+        turn_rate=0.0,
+        goal=(9.0, 0.0),
+        goal_radius=0.2,
+        range=1.0,
+        radius=0.22,
+        sense=sense,
+        look=sense,
+        motion=motion,
+    )
+
+
+CORNER = Field(boxes=np.array([[0.8, -0.8, 1.0, 1.0, 0.0]]))
+"""A block from (0.3, −1.3) to (1.3, −0.3)."""
+
+
+def test_in_the_open_it_makes_straight_for_the_end():
+    leg = Course([(0.0, 0.0), (0.3, 0.2), (0.6, 0.0)]).next(observe(Field()))
+    assert (leg.heading, leg.way, leg.reach) == (0.0, pytest.approx(0.6), math.inf)
+
+
+def test_it_takes_the_farthest_point_in_view_and_stops_there_for_the_rest():
+    # Up along the block, along its top, and down behind it.
+    around = Course([(0.0, -0.5), (0.1, 0.1), (1.0, 0.1), (1.7, -0.2), (1.7, -1.2)])
+    leg = around.next(observe(CORNER, (0.0, -0.8)))
+    assert leg.heading == pytest.approx(math.atan2(0.9, 0.1))
+    assert leg.reach == leg.way == pytest.approx(math.hypot(0.1, 0.9))
+    leg = around.next(observe(CORNER, (0.1, 0.1)))
+    assert leg.heading == pytest.approx(0.0)
+    assert leg.reach == leg.way == pytest.approx(0.9)
+    leg = around.next(observe(CORNER, (1.0, 0.1)))
+    assert leg.reach == leg.way == pytest.approx(math.hypot(0.7, 0.3))
+    leg = around.next(observe(CORNER, (1.68, -0.2)))
+    assert (leg.way, leg.reach) == (pytest.approx(math.hypot(0.02, 1.0)), math.inf)
+
+
+def test_no_more_than_three_points_ahead_are_tried():
+    leg = Course([(0.1 * k, 0.0) for k in range(1, 9)]).next(observe(Field()))
+    assert leg.way == leg.reach == pytest.approx(0.3)
+
+
+def test_a_point_passed_is_never_gone_back_to():
+    course = Course([(0.0, 0.0), (0.5, 0.0), (0.5, 0.5)])
+    assert course.next(observe(Field())).heading == pytest.approx(math.pi / 4)
+    leg = course.next(observe(Field(), (0.6, 0.0)))
+    assert leg.way == pytest.approx(math.hypot(0.1, 0.5))
+
+
+def test_a_point_beyond_its_sight_counts_as_seen_when_all_it_sees_is_free():
+    leg = Course([(3.0, 0.0)]).next(observe(Field()))
+    assert (leg.way, leg.reach) == (3.0, math.inf)
+
+
+def test_a_point_is_passed_only_where_it_was_really_reached():
+    course = [(0.0, -0.8), (0.05, 0.1), (1.0, -0.07)]
+    assert Course(course).next(observe(CORNER, (0.05, -0.8))).way == pytest.approx(0.9)
+    # 2 cm off it counts as reached, though what comes next is hidden yet; 4 cm off it does not.
+    course = ((0.03, -0.1), (1.0, -0.07))
+    leg = Course([*course]).next(observe(CORNER, (0.03, -0.12)))
+    assert leg.heading == pytest.approx(math.atan2(0.05, 0.97), abs=math.radians(45.0))
+    assert leg.way == pytest.approx(0.1)
+    leg = Course([*course]).next(observe(CORNER, (0.03, -0.14)))
+    assert leg.heading == pytest.approx(math.pi / 2)
+    assert leg.reach == leg.way == pytest.approx(0.04)
+
+
+def between(width, at=0.25):
+    """Two cylinders with room between them, ahead."""
+    y = 0.2 + width / 2
+    return Field(np.array([[at, y, 0.2], [at, -y, 0.2]]))
+
+
+@pytest.mark.parametrize("facing", [0.3, -0.3, 0.05, 2.5, 6.0])
+def test_where_the_way_is_narrow_it_turns_on_the_spot_first(facing):
+    leg = Course([(1.5, 0.0)]).next(observe(between(0.45), heading=facing))
+    assert (leg.heading, leg.reach) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("facing", [0.0, 0.03, -0.03, math.tau])
+def test_when_it_faces_a_narrow_way_it_enters(facing):
+    leg = Course([(1.5, 0.0)]).next(observe(between(0.45), heading=facing))
+    assert (leg.heading, leg.reach) == (0.0, math.inf)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_way_is_narrow_where_it_is_so_on_one_side(side):
+    field = Field(np.array([[0.15, 0.43 * side, 0.2]]))
+    assert Course([(1.5, 0.0)]).next(observe(field, heading=0.3)).reach == 0.0
+
+
+def test_where_the_way_is_wide_it_turns_as_it_drives():
+    leg = Course([(1.5, 0.0)]).next(observe(between(0.8), heading=0.3))
+    assert leg.reach == math.inf
+
+
+def test_what_is_narrow_only_farther_on_is_no_matter_yet():
+    leg = Course([(1.5, 0.0)]).next(observe(between(0.45, at=0.4), heading=0.3))
+    assert leg.reach == math.inf
+
+
+def test_a_point_robot_needs_no_turn():
+    leg = Course([(1.5, 0.0)]).next(observe(between(0.45), heading=2.0, motion=None))
+    assert leg.reach == math.inf
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_where_the_way_is_blocked_it_goes_aside_by_the_least_that_is_free(side):
+    ahead = observe(Field(np.array([[0.45, 0.05 * side, 0.2]])))  # 0.04 m are free
+    leg = Course([(1.0, 0.0)]).next(ahead)
+    assert leg.way == pytest.approx(0.1)
+    assert ahead.sense([leg.heading])[0] >= leg.way
+    turn = -leg.heading * side
+    assert 0.0 < turn < math.pi / 2
+    # The turns that are tried grow by less than 1.6 each, on both sides alike.
+    assert (ahead.sense(np.linspace(-turn / 1.6, turn / 1.6, 50)) < leg.way).all()
+
+
+def test_near_a_point_less_room_is_enough():
+    # To the next point 5 cm are missing; 10 cm are free nowhere near it.
+    field = Field(np.array([[0.7, 0.24, 0.2]]), arena=(9.0, 9.0))
+    here = observe(field, (0.24, 0.24))
+    leg = Course([(0.29, 0.24), (8.0, 0.23)]).next(here)
+    assert leg.way == pytest.approx(0.05)
+    assert here.sense([leg.heading])[0] >= 0.05
+
+
+def test_where_nothing_is_free_it_gives_up_at_once():
+    assert Course([(1.0, 0.0)]).next(observe(Field(arena=(0.5, 0.5)), (0.25, 0.25))) is None
+
+
+def test_it_gives_up_when_it_came_no_nearer_for_three_seconds():
+    course = Course([(1.5, 0.0)])
+    for time in (10.0, 11.0, 10.0 + PATIENCE):
+        assert course.next(observe(Field(), time=time)) is not None
+    assert course.next(observe(Field(), time=10.1 + PATIENCE)) is None
+
+
+def test_a_centimetre_nearer_is_patience_anew_and_less_is_not():
+    for step, goes_on in ((0.012, True), (0.008, False)):
+        course = Course([(1.5, 0.0)])
+        assert course.next(observe(Field(), time=0.0)) is not None
+        assert course.next(observe(Field(), (step, 0.0), time=2.0)) is not None
+        last = course.next(observe(Field(), (step, 0.0), time=PATIENCE + 0.5))
+        assert (last is not None) is goes_on
+
+
+def test_a_new_point_is_patience_anew():
+    course = Course([(0.1, 0.1), (1.0, 0.1), (1.7, -0.2), (1.7, -1.2)])
+    assert course.next(observe(CORNER, (0.0, -0.8), time=0.0)).way < 1.0
+    at_it = [course.next(observe(CORNER, (0.1, 0.1), time=t)) for t in (2.0, 4.0, 5.0, 5.1)]
+    assert [leg is None for leg in at_it] == [False, False, False, True]
+
+
+def test_the_heading_it_gives_is_the_one_to_its_point_wherever_that_is():
+    for angle in np.linspace(-3.0, 3.0, 7):
+        leg = Course([(0.7 * math.cos(angle), 0.7 * math.sin(angle))]).next(observe(Field()))
+        assert abs(wrap_angle(leg.heading - angle)) < 1e-9
