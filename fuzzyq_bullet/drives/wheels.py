@@ -114,10 +114,13 @@ class WheelsDriver:
         """Return for how many steps from a tick on the robot surely cannot touch anything.
 
         To come nearer to what is nearest than this, it would take twice the acceleration that the
-        wheels are ever asked for.
+        wheels are ever asked for: v·t + (2a)·t²/2 is how far that would take it.
         """
-        fastest = abs(tick.speed) + 2.0 * self._limits.acceleration * TICK_STEPS * TIME_STEP
-        return int(min(tick.clearance / (fastest * TIME_STEP), TICK_STEPS))
+        speed, twice = abs(tick.speed), 2.0 * self._limits.acceleration
+        if math.isinf(tick.clearance):
+            return TICK_STEPS
+        soonest = (math.sqrt(speed * speed + 2.0 * twice * tick.clearance) - speed) / twice
+        return min(int(soonest / TIME_STEP), TICK_STEPS)
 
     def _collision(self, contact: Contact) -> Collision:
         x, y, _ = contact.point

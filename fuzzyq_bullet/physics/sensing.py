@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT
 from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
 
-ROUNDNESS = 0.002
+ROUNDNESS = 0.001
 """Greatest distance between a circle and its polygon (m)."""
 MESH_CORNERS = 30_000
 """Most corners of one mesh; PyBullet silently drops vertices beyond 131072."""

@@ -27,6 +27,8 @@ ASIDE = tuple(
     for side in (1, -1)
 )
 """Turns away from the way seen before, where the robot cannot take it quite as it was seen."""
+AT_ONCE = 6
+"""How many of them are tried in one batch of rays; mostly one of the first few is free."""
 LEAST = 0.5 * STEP_UNIT
 """What must be free to go aside (m)."""
 
@@ -102,8 +104,9 @@ def _must_aim(observation: Observation, heading: float, way: float) -> bool:
 
 def _aside(observation: Observation, heading: float, enough: float) -> Leg | None:
     """Return the least turn from a heading that is free for long enough, if one is."""
-    headings = [heading + turn for turn in ASIDE]
-    for other, length in zip(headings, observation.sense(headings).tolist(), strict=True):
-        if length >= enough:
-            return Leg(other, enough)
+    for first in range(0, len(ASIDE), AT_ONCE):
+        headings = [heading + turn for turn in ASIDE[first : first + AT_ONCE]]
+        for other, length in zip(headings, observation.sense(headings).tolist(), strict=True):
+            if length >= enough:
+                return Leg(other, enough)
     return None

@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import dijkstra
 from fuzzyq_bullet.planning.base import Floats
 from fuzzyq_bullet.planning.view import Point
 
-CELL = 0.07
+CELL = 0.1
 """Side of a cell (m); doubled until the grid has no more than ``MOST`` cells."""
 MOST = 50_000
 MARGIN = 1.0
