@@ -187,3 +187,7 @@ def test_the_heading_it_gives_is_the_one_to_its_point_wherever_that_is():
     for angle in np.linspace(-3.0, 3.0, 7):
         leg = Course([(0.7 * math.cos(angle), 0.7 * math.sin(angle))]).next(observe(Field()))
         assert abs(wrap_angle(leg.heading - angle)) < 1e-9
+
+
+def test_the_last_point_is_never_dropped():
+    assert Course([(0.0, 0.0)]).next(observe(Field())).way == 0.0

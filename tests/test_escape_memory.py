@@ -14,6 +14,7 @@ from fuzzyq_bullet.geometry import Field, wrap_angle
 from fuzzyq_bullet.oracle import feasible
 from fuzzyq_bullet.planning import Decision, Observation, promise
 from fuzzyq_bullet.planning.course import PATIENCE as COURSE_PATIENCE
+from fuzzyq_bullet.planning.course import Course, Leg
 from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
 from fuzzyq_bullet.planning.exits import exits_of
 from fuzzyq_bullet.planning.places import NEAR, Place, Places
@@ -328,6 +329,12 @@ def test_however_large_the_world_the_grid_stays_small(size, monkeypatch):
 # ---- places and exits
 
 
+def row(gap):
+    """Return a long wall of cylinders 0.6 m ahead with a gap in it."""
+    half = [(0.6, 0.2 + gap / 2 + 0.4 * k, 0.2) for k in range(8)]
+    return [*half, *((x, -y, r) for x, y, r in half)]
+
+
 def seen_from(field, here):
     """Return a place with its view, and the exits of that."""
     view = look_around(observe(field, here))
@@ -383,10 +390,9 @@ def test_past_either_side_of_a_pillar_an_exit_leads_to_where_it_can_be_looked_be
     assert max(one.way for one in past) >= math.sqrt(0.6**2 - 0.42**2) + 0.2
 
 
-def test_into_a_gap_an_exit_leads_as_far_as_is_free_and_costs_more_than_an_open_one():
+def test_into_a_gap_an_exit_leads_as_far_as_is_free():
     # A wall with a gap of 0.43 m: from here no line leads through.
-    wall = [(0.6, 0.2 + 0.215 + 0.4 * k, 0.2) for k in range(8)]
-    field = Field(np.array([*wall, *((x, -y, r) for x, y, r in wall)]))
+    field = Field(np.array(row(0.43)))
     _, exits = seen_from(field, (0.0, 0.0))
     into = [one for one in exits if one.beyond is None]
     assert [(one.heading, one.way) for one in into] == [(0.0, pytest.approx(0.6 - 0.05, abs=0.06))]
@@ -561,6 +567,59 @@ def test_along_a_wall_that_was_seen_whole_an_end_comes_before_all_that_leads_awa
     assert all(free(field, a, b, BODY) for a, b in pairwise(route))
 
 
+def test_two_places_near_each_other_with_a_wall_between_are_not_joined():
+    field = Field(boxes=np.array([[0.5, -1.0, 0.1, 4.6, 0.0]]))  # up to y = 1.3
+    up = [(0.1, 0.05 * k) for k in range(34)]
+    over = [(0.05 * k, 1.65) for k in range(3, 19)]
+    down = [(0.9, 1.65 - 0.05 * k) for k in range(1, 34)]
+    places = Places()
+    for here in up + over + down:
+        places.pass_by(here)
+        if here in (up[0], down[-1]):
+            places.look_around(observe(field, here))
+    count = 0
+    while (found := places.best_exit((-5.0, 0.0))) is not None and count < 60:
+        assert all(free(field, a, b, BODY) for a, b in pairwise(found[1]))
+        places.give_up(found[0])
+        count += found[0].point[0] < 0.3
+    assert count > 3
+
+
+def test_of_two_exits_as_far_from_the_goal_the_nearer_one_comes_first():
+    for goal in ((1.5, 10.0), (1.2, 10.0)):
+        chosen, _ = looked(Field(), (0.0, 0.0), (3.0, 0.0)).best_exit(goal)
+        assert chosen.point[0] > 2.0
+
+
+def test_an_open_way_comes_before_a_gap_that_is_a_little_nearer():
+    # A pillar, a gap of 0.43 m and a wall: past the pillar it is 0.3 m farther, and sure.
+    wall = [(0.6, -0.415 - 0.4 * k, 0.2) for k in range(8)]
+    field = Field(np.array([(0.6, 0.415, 0.2), *wall]))
+    assert any(one.beyond is None for one in seen_from(field, (0.0, 0.0))[1])
+    chosen, _ = looked(field, (0.0, 0.0)).best_exit((5.0, 2.0))
+    assert chosen.beyond is not None
+    # What is nearer by more than the doubt is worth comes first all the same.
+    nearer, _ = looked(Field(np.array(row(0.43))), (0.0, 0.0)).best_exit((5.0, 0.0))
+    assert nearer.beyond is None
+
+
+def test_when_all_else_was_tried_what_seems_a_corner_is_tried_too_also_in_later_looks():
+    field = Field(np.array(row(0.40)))
+    assert [one for one in seen_from(field, (0.0, 0.0))[1] if one.beyond is None] == []
+    places = looked(field, (0.0, 0.0))
+    tried = offered(places)
+    doubtful = [one for one in tried if one.beyond is None]
+    assert any(abs(wrap_angle(one.heading)) < 0.05 for one in doubtful)
+    first = next(k for k, one in enumerate(tried) if one.beyond is None)
+    assert all(one.beyond is None for one in tried[first:])
+
+    places = looked(field, (-9.0, 0.0))
+    offered(places)
+    places.look_around(observe(field, (0.0, 0.0)))
+    again = [one for one in offered(places) if one.beyond is None]
+    assert any(abs(wrap_angle(one.heading)) < 0.05 for one in again)
+
+
 def test_in_a_world_of_nothing_its_first_exit_points_at_the_goal():
     for goal in ((9.0, 0.0), (0.0, 9.0), (-6.0, -6.0)):
         chosen, route = looked(Field(), (0.0, 0.0)).best_exit(goal)
@@ -691,3 +750,28 @@ def test_at_an_exit_it_looks_again_and_goes_on_to_another():
     second = walk.decide(first)
     assert second.mode == "following"
     assert math.dist(second.target, first) > NEAR
+
+
+def test_near_the_goal_a_line_that_leads_to_it_is_taken_though_little_is_to_gain():
+    walk = Walk(Field(boxes=np.array([[0.4, 0.0, 0.1, 0.3, 0.0]])), (0.2, 0.0))
+    assert walk.decide((0.0, 0.0), middle=0.1).mode == "breakout"
+    assert walk.decide((0.15, 0.3), middle=0.25).mode == "following"
+    assert walk.decide((0.15, 0.3), middle=0.31).mode == "routine"
+
+
+def test_a_line_that_leads_nearer_but_is_blocked_is_not_taken():
+    walk = stalled()
+    assert walk.decide((0.8, 0.0), middle=0.1).mode == "following"
+
+
+def test_a_robot_that_comes_no_nearer_but_sees_nothing_on_its_line_goes_on():
+    walk = Walk(Field(), (5.0, 0.0))
+    assert {walk.decide((0.0, 0.0)).mode for _ in range(40)} == {"routine"}
+
+
+def test_it_drives_each_leg_of_its_course_and_no_farther(monkeypatch):
+    walk = stalled()
+    monkeypatch.setattr(Course, "next", lambda self, observation: Leg(1.2, 0.03, 0.02))
+    decision = walk.decide((0.0, 0.0))
+    assert (decision.heading, decision.reach) == (1.2, 0.02)
+    assert decision.step <= 0.03
