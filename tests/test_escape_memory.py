@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 import pytest
@@ -497,12 +497,13 @@ def looked(field, *spots):
     return places
 
 
-def test_what_was_given_up_is_not_offered_again_however_often_it_is_seen():
+def test_what_was_given_up_for_good_is_not_offered_again_however_often_it_is_seen():
     field = Field(np.array([[2.6, 2.5, 0.2], [2.6, 1.5, 0.2]]), arena=(100.0, 100.0))
     places = looked(field, (2.0, 2.0))
     first = offered(places)
     assert len(first) > 10
-    assert all(math.dist(a.point, b.point) > NEAR for a, b in pairwise(first))
+    again = [sum(math.dist(a.point, b.point) <= NEAR for b in first) for a in first]
+    assert max(again) <= 2  # at the very end what was given up may have a second chance
     for spot in ((2.0, 2.0), (2.01, 2.0), (2.0, 2.02)):
         places.look_around(observe(field, spot))
         for exit_ in offered(places):
@@ -611,7 +612,8 @@ def test_when_all_else_was_tried_what_seems_a_corner_is_tried_too_also_in_later_
     doubtful = [one for one in tried if one.beyond is None]
     assert any(abs(wrap_angle(one.heading)) < 0.05 for one in doubtful)
     first = next(k for k, one in enumerate(tried) if one.beyond is None)
-    assert all(one.beyond is None for one in tried[first:])
+    for later in tried[first:]:
+        assert later.beyond is None or later in tried[:first]
 
     places = looked(field, (-9.0, 0.0))
     offered(places)
@@ -717,12 +719,16 @@ def test_an_exit_that_cannot_be_reached_is_tried_twice_and_then_given_up():
     while not (decision := walk.decide((0.0, 0.0))).hopeless:
         held.append(decision.target)
         assert len(held) < 2000
-    tries = [held.count(target) for target in dict.fromkeys(held)]
-    changes = sum(a != b for a, b in pairwise(held))
-    assert len(tries) > 3
-    assert changes == len(tries) - 1  # none is ever come back to
-    twice = 2 * COURSE_PATIENCE / 0.25
-    assert tries[1:] == pytest.approx([twice + 2] * (len(tries) - 1), abs=2)
+    tries = [(target, len(list(decisions))) for target, decisions in groupby(held)]
+    targets = {target for target, _ in tries}
+    assert len(targets) > 3
+    # None is come back to before all the others were tried.
+    assert {target for target, _ in tries[: len(targets)]} == targets
+    twice = 2 * COURSE_PATIENCE / 0.25 + 2
+    counts = [count for _, count in tries[1:]]
+    assert counts[: len(targets) - 1] == pytest.approx([twice] * (len(targets) - 1), abs=2)
+    assert max(counts) <= twice + 2
+    assert len(tries) <= 2 * len(targets)
     assert decision.step == decision.reach == 0.0
 
 
