@@ -48,6 +48,8 @@ def in_sight(start: Point, goal: Point, walls: Floats) -> bool:
 def ways_to_goal(goal: Point, walls: Floats, starts: Sequence[Point]) -> list[float]:
     """Return the least way (m) from each start to the goal that no known wall crosses.
 
+    Walls must come in short pieces, as those of a view do: longer than eight cells they would leak.
+
     Infinite where the known walls leave none, as far as the grid can tell.
     """
     points = np.array([*starts, goal])

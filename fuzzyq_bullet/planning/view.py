@@ -68,7 +68,7 @@ def look_around(observation: Observation) -> View:
     """Look in all directions with thin rays, and tell how far the robot's disc could move.
 
     What a ray met stops the disc where it comes within a detection line's half width of it. What
-    stands beside the robot already, nearer than that, does not stop it from moving past.
+    stands nearer than that already stops it from moving towards it, and nearly along it.
     """
     distance = observation.look(_RAY_HEADINGS.tolist())
     met = distance < observation.range + observation.radius
