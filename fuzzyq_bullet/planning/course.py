@@ -65,7 +65,7 @@ class Course:
         None when the robot does not get on.
         """
         here, points = observation.position, self._points
-        if len(points) > 1 and math.dist(here, points[0]) <= REACHED:
+        while len(points) > 1 and math.dist(here, points[0]) <= REACHED:
             self._drop(1)
         ahead = points[:AHEAD]
         ways = [math.dist(here, point) for point in ahead]

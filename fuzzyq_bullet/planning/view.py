@@ -67,13 +67,13 @@ class View:
 def look_around(observation: Observation) -> View:
     """Look in all directions with thin rays, and tell how far the robot's disc could move.
 
-    What a ray met stops the disc where it comes within a detection line's half width of it. What
-    stands nearer than that already stops it from moving towards it, and nearly along it.
+    What a ray met stops the disc where it comes within a detection line's half width of it, or as
+    near as the nearest thing is already: what stands beside the robot does not stop it.
     """
     distance = observation.look(_RAY_HEADINGS.tolist())
     met = distance < observation.range + observation.radius
     hits, distance = _TURNS[met] * distance[met], distance[met]
-    wide_squared = np.minimum(observation.radius, distance - 1e-3) ** 2
+    wide_squared = min(observation.radius, distance.min(initial=np.inf) - 1e-3) ** 2
 
     def lengths_along(turns: NDArray[np.complex128]) -> Floats:
         seen = hits * turns
