@@ -191,3 +191,10 @@ def test_the_heading_it_gives_is_the_one_to_its_point_wherever_that_is():
 
 def test_the_last_point_is_never_dropped():
     assert Course([(0.0, 0.0)]).next(observe(Field())).way == 0.0
+
+
+def test_points_that_it_stands_on_are_no_legs():
+    pillar = Field(cylinders=np.array([[0.3, 0.5, 0.1]]))
+    course = Course([(0.0, 0.0), (0.0, 0.0), (1.0, 3.0)])
+    leg = course.next(observe(pillar))
+    assert leg is None or leg.way > 0.0

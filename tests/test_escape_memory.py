@@ -176,6 +176,13 @@ def test_what_the_robot_stands_too_near_to_does_not_keep_it_from_moving_away(apa
         assert all(map(math.isfinite, view.lengths))
 
 
+def test_a_robot_beside_a_wall_sees_the_way_along_it():
+    view = look_around(observe(Field(boxes=np.array([[0.0, 0.31, 4.0, 0.2, 0.0]])), (0.0, 0.0)))
+    assert view.free(-0.03) == pytest.approx(1.0)
+    assert view.free(math.pi + 0.03) == pytest.approx(1.0)
+    assert view.free(math.pi / 2) < 0.02
+
+
 def seen_between(width, distance, aside, turned):
     """Return gaps and free ways that a robot sees between two cylinders."""
     turn = np.array([[math.cos(turned), -math.sin(turned)], [math.sin(turned), math.cos(turned)]])
