@@ -115,7 +115,7 @@ class Decision:
         stride: N_s, the step scale in [0, 2].
         weights: (ω1, ω2) of Eq. 17: of the step and of the turn.
         guard: Free length sensed along the final heading (m), NaN where not sensed.
-        target: A temporary goal or the boundary point being followed (m), NaN when there is none.
+        target: The temporary goal of a way out (m), NaN when there is none.
         hopeless: True when the planner knows that it cannot go on; the episode ends as ``stuck``.
     """
 

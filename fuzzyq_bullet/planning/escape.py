@@ -26,7 +26,8 @@ GAIN = 1.0 * STEP_UNIT
 PATIENCE = 2.5
 """Time without coming nearer to the goal after which the routine part has failed (s)."""
 ARRIVED = 0.1
-"""How near to a point of its way the robot has reached it (m)."""
+"""How near to an exit the robot has reached it (m); nearer than ``places.NEAR``, so that looking
+about from there is the end of that exit."""
 
 
 class Escape:
@@ -84,9 +85,6 @@ class Escape:
     def _look(self, observation: Observation) -> None:
         """Look about, and choose the exit to go for."""
         self._places.look_around(observation)
-        self._choose(observation)
-
-    def _choose(self, observation: Observation) -> None:
         self._exit, points = self._places.best_exit(observation.goal) or (None, [])
         self._course = Course(points)
 
@@ -103,9 +101,6 @@ class Escape:
                     break
                 self._fail(tried)
             self._look(observation)
-            if self._exit == tried and math.dist(observation.position, tried.point) <= ARRIVED:
-                self._places.give_up(tried)
-                self._choose(observation)
         if self._exit is None or leg is None:
             return replace(routine, step=0.0, reach=0.0, mode=mode, hopeless=True)
         step = routine.weights[0] * LONGEST_STRIDE * STEP_UNIT
