@@ -12,7 +12,7 @@ from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.planning import Decision, Planner, make_planner
+from fuzzyq_bullet.planning import Decision, Observation, Planner, make_planner
 from fuzzyq_bullet.recorder import recorded
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.models import Limits, Scenario
@@ -49,24 +49,64 @@ def run_in(
     world: World, scenario: Scenario, planner: Planner, *, progress: Progress | None = None
 ) -> Trajectory:
     """Run one episode of a realised scenario in a world that is already built for it."""
-    field = Field.of(scenario.obstacles, scenario.arena)
-    driver: Driver = (
-        WheelsDriver(world, field, scenario)
-        if scenario.drive == "wheels"
-        else KinematicDriver(world, field, scenario)
-    )
-    decisions: list[tuple[int, Decision]] = []
-    standstill = _Standstill(driver.ticks[0])
-    outcome = None
-    while outcome is None:
-        decision = planner.decide(driver.observe())
-        decisions.append((len(driver.ticks) - 1, decision))
-        driver.advance(decision)
-        outcome = _outcome(driver, decision, len(decisions), scenario.limits, standstill)
+    episode = Episode(world, scenario)
+    while episode.outcome is None:
+        episode.advance(planner.decide(episode.observe()))
         if progress is not None:
-            now = driver.ticks[-1]
+            now = episode.now
             progress(now.time, math.dist((now.x, now.y), scenario.goal.position))
-    return recorded(scenario, driver, decisions, outcome)
+    return episode.record()
+
+
+class Episode:
+    """An episode that whoever holds it drives, a decision at a time.
+
+    Args:
+        world: A world that is built for the scenario.
+        scenario: A realised scenario.
+
+    Attributes:
+        outcome: How it ended; None while it goes on.
+    """
+
+    def __init__(self, world: World, scenario: Scenario) -> None:
+        field = Field.of(scenario.obstacles, scenario.arena)
+        self._scenario = scenario
+        self._driver: Driver = (
+            WheelsDriver(world, field, scenario)
+            if scenario.drive == "wheels"
+            else KinematicDriver(world, field, scenario)
+        )
+        self._decisions: list[tuple[int, Decision]] = []
+        self._standstill = _Standstill(self.now)
+        self.outcome: Outcome | None = None
+
+    @property
+    def now(self) -> Tick:
+        """The latest tick."""
+        return self._driver.ticks[-1]
+
+    def observe(self) -> Observation:
+        """Return what a planner may know now."""
+        return self._driver.observe()
+
+    def advance(self, decision: Decision) -> None:
+        """Carry out a decision until the next one is due, or the episode is over."""
+        driver = self._driver
+        self._decisions.append((len(driver.ticks) - 1, decision))
+        driver.advance(decision)
+        count, limits = len(self._decisions), self._scenario.limits
+        self.outcome = _outcome(driver, decision, count, limits, self._standstill)
+
+    def record(self) -> Trajectory:
+        """Return the trajectory of an episode that is over.
+
+        Raises:
+            ValueError: If it is not.
+        """
+        if self.outcome is None:
+            raise ValueError("the episode is not over")
+        return recorded(self._scenario, self._driver, self._decisions, self.outcome)
 
 
 class _Standstill:

@@ -2,24 +2,47 @@
 
 from __future__ import annotations
 
-from fuzzyq_bullet.planning.base import Decision, Observation
+from fuzzyq_bullet.planning.base import Decision, Mode, Observation
 from fuzzyq_bullet.planning.escape import Escape
 from fuzzyq_bullet.planning.guard import guarded
-from fuzzyq_bullet.planning.routine import Routine
+from fuzzyq_bullet.planning.routine import Routine, Situation
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings
 
 
 class ImprovedFuzzyPlanner:
-    """The fuzzy controller's step, or a way out where it finds none; never longer than is free."""
+    """The fuzzy controller's step, or a way out where it finds none; never longer than is free.
+
+    Attributes:
+        mode: The mode of its latest decision.
+    """
 
     def __init__(self, settings: ImprovedFuzzySettings) -> None:
         self._routine = Routine(settings)
         self._escape = Escape(following=settings.following) if settings.breakout else None
         self._guard = settings.guard
+        self._weights = settings.weights
+        self.mode: Mode = "routine"
 
-    def decide(self, observation: Observation, /) -> Decision:
-        """Return the next step, capped by the guard."""
-        decision = self._routine.decide(observation)
+    def sense(self, observation: Observation) -> Situation:
+        """Return what there is to be weighed: the first half of a decision."""
+        return self._routine.sense(observation)
+
+    def act(
+        self, observation: Observation, situation: Situation, weights: tuple[float, float]
+    ) -> Decision:
+        """Return the decision with these weights, capped by the guard: the second half.
+
+        Args:
+            observation: What was sensed.
+            situation: What ``sense`` made of it.
+            weights: (ω1, ω2) of Eq. 17.
+        """
+        decision = self._routine.step(situation, weights)
         if self._escape is not None:
             decision = self._escape.decide(decision, observation)
+        self.mode = decision.mode
         return guarded(decision, observation) if self._guard else decision
+
+    def decide(self, observation: Observation, /) -> Decision:
+        """Return the next step with the weights of the settings."""
+        return self.act(observation, self.sense(observation), self._weights)

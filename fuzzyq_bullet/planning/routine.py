@@ -3,12 +3,37 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from fuzzyq_bullet.fuzzy.controller import Inference
 from fuzzyq_bullet.fuzzy.paper import paper_controller
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Floats, Observation
 from fuzzyq_bullet.planning.settings import RoutineSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """What the detection lines and the controller say, before any weight is put on it.
+
+    Attributes:
+        bearing: World heading of the goal, and of the middle line (rad).
+        to_goal: Distance to the centre of the goal (m).
+        lines: World headings of the left, middle and right lines (rad), shape (3,).
+        lengths: Their free lengths (m), shape (3,).
+        distance: d, in units of S_p.
+        difference: Df, in units of S_p (Eq. 14).
+        inferred: What the controller makes of the two.
+    """
+
+    bearing: float
+    to_goal: float
+    lines: tuple[float, float, float]
+    lengths: Floats
+    distance: float
+    difference: float
+    inferred: Inference
 
 
 class Routine:
@@ -23,8 +48,8 @@ class Routine:
         self._settings = settings
         self._controller = paper_controller(rules=settings.rules, samples=settings.samples)
 
-    def decide(self, observation: Observation) -> Decision:
-        """Return the step that the fuzzy controller proposes, as yet unguarded."""
+    def sense(self, observation: Observation) -> Situation:
+        """Cast the three lines and ask the controller (Steps 4–9)."""
         settings = self._settings
         dx = observation.goal[0] - observation.position[0]
         dy = observation.goal[1] - observation.position[1]
@@ -41,19 +66,27 @@ class Routine:
             nearest = middle if settings.distance == "middle" else min(left, middle, right)
             distance, difference = nearest / STEP_UNIT, (left - right) / STEP_UNIT  # Eqs. 13, 14
         inferred = self._controller.infer(distance, difference)
+        return Situation(bearing, to_goal, lines, lengths, distance, difference, inferred)
 
-        w1, w2 = settings.weights
+    def step(self, situation: Situation, weights: tuple[float, float]) -> Decision:
+        """Return the step that the controller proposes, weighted (Eqs. 15–17), unguarded."""
+        w1, w2 = weights
+        inferred = situation.inferred
         return Decision(
-            heading=bearing + w2 * inferred.turn * settings.turn_unit,  # Eqs. 15–17
-            step=min(w1 * inferred.stride * STEP_UNIT, to_goal),
-            lines=np.array(lines),
-            lengths=lengths,
-            distance=distance,
-            difference=difference,
+            heading=situation.bearing + w2 * inferred.turn * self._settings.turn_unit,
+            step=min(w1 * inferred.stride * STEP_UNIT, situation.to_goal),
+            lines=np.array(situation.lines),
+            lengths=situation.lengths,
+            distance=situation.distance,
+            difference=situation.difference,
             near=inferred.near,
             side=inferred.side,
             rules=inferred.rules,
             turn=inferred.turn,
             stride=inferred.stride,
-            weights=settings.weights,
+            weights=weights,
         )
+
+    def decide(self, observation: Observation) -> Decision:
+        """Sense, and step with the weights of the settings."""
+        return self.step(self.sense(observation), self._settings.weights)
