@@ -12,7 +12,8 @@ class FuzzyPlanner:
 
     def __init__(self, settings: FuzzySettings) -> None:
         self._routine = Routine(settings)
+        self._weights = settings.weights
 
     def decide(self, observation: Observation, /) -> Decision:
         """Return the controller's step, braking for what the middle line sees."""
-        return self._routine.decide(observation)
+        return self._routine.step(self._routine.sense(observation), self._weights)

@@ -6,25 +6,26 @@ from fuzzyq_bullet.planning.base import Decision, Mode, Observation
 from fuzzyq_bullet.planning.escape import Escape
 from fuzzyq_bullet.planning.guard import guarded
 from fuzzyq_bullet.planning.routine import Routine, Situation
-from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings
+from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings, WaysOutSettings
 
 
-class ImprovedFuzzyPlanner:
-    """The fuzzy controller's step, or a way out where it finds none; never longer than is free.
+class Weighed:
+    """A decision in two halves, with room for weights between them.
+
+    The fuzzy controller's step, or a way out where it finds none; never longer than is free.
 
     Attributes:
-        mode: The mode of its latest decision.
+        mode: The mode of the latest decision.
     """
 
-    def __init__(self, settings: ImprovedFuzzySettings) -> None:
+    def __init__(self, settings: WaysOutSettings) -> None:
         self._routine = Routine(settings)
         self._escape = Escape(following=settings.following) if settings.breakout else None
         self._guard = settings.guard
-        self._weights = settings.weights
         self.mode: Mode = "routine"
 
     def sense(self, observation: Observation) -> Situation:
-        """Return what there is to be weighed: the first half of a decision."""
+        """Return what there is to be weighed: the first half."""
         return self._routine.sense(observation)
 
     def act(
@@ -42,6 +43,14 @@ class ImprovedFuzzyPlanner:
             decision = self._escape.decide(decision, observation)
         self.mode = decision.mode
         return guarded(decision, observation) if self._guard else decision
+
+
+class ImprovedFuzzyPlanner(Weighed):
+    """The improved planner with weights that stay as they are."""
+
+    def __init__(self, settings: ImprovedFuzzySettings) -> None:
+        super().__init__(settings)
+        self._weights = settings.weights
 
     def decide(self, observation: Observation, /) -> Decision:
         """Return the next step with the weights of the settings."""

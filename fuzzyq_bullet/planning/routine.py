@@ -86,7 +86,3 @@ class Routine:
             stride=inferred.stride,
             weights=weights,
         )
-
-    def decide(self, observation: Observation) -> Decision:
-        """Sense, and step with the weights of the settings."""
-        return self.step(self.sense(observation), self._settings.weights)

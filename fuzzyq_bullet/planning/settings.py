@@ -20,11 +20,8 @@ class PlannerSettings(BaseModel):
 
 
 class RoutineSettings(PlannerSettings):
-    """Parameters of the routine part: detection lines, fuzzy controller, weights (Section 3)."""
+    """Parameters of the routine part: detection lines and fuzzy controller (Section 3)."""
 
-    weights: tuple[Weight, Weight] = Field(
-        default=(0.5, 0.5), description="(ω1, ω2) of Eq. 17: ω1 scales the step, ω2 the turn."
-    )
     line_angle: Annotated[_Number, Field(gt=0.0, lt=math.pi)] = Field(
         default=math.radians(45.0),
         description="α: angle of the left and right lines from the middle one (rad).",
@@ -44,16 +41,17 @@ class RoutineSettings(PlannerSettings):
     )
 
 
-class FuzzySettings(RoutineSettings):
-    """The traditional baseline: the fuzzy controller alone."""
+class WeightsSettings(PlannerSettings):
+    """Weights that stay as they are."""
 
-    name: Literal["fuzzy"] = "fuzzy"
+    weights: tuple[Weight, Weight] = Field(
+        default=(0.5, 0.5), description="(ω1, ω2) of Eq. 17: ω1 scales the step, ω2 the turn."
+    )
 
 
-class ImprovedFuzzySettings(RoutineSettings):
-    """The improved fuzzy planner: the controller, and the guard that caps its step."""
+class WaysOutSettings(RoutineSettings):
+    """Parameters of what the improved planners have beside the routine part (Section 4)."""
 
-    name: Literal["improved-fuzzy"] = "improved-fuzzy"
     guard: Annotated[bool, Strict()] = Field(
         default=True, description="Whether a corridor along the final heading caps the step."
     )
@@ -63,3 +61,41 @@ class ImprovedFuzzySettings(RoutineSettings):
     following: Annotated[bool, Strict()] = Field(
         default=True, description="Whether it follows large obstacles after a breakout (4.3)."
     )
+
+
+class PolicySettings(PlannerSettings):
+    """Where a planner that has learned takes what it learned from."""
+
+    policy: Annotated[str, Strict(), Field(min_length=1, max_length=4096)] | None = Field(
+        default=None, description="A policy file (fuzzyq train); by default the one shipped."
+    )
+
+
+class FuzzySettings(WeightsSettings, RoutineSettings):
+    """The traditional baseline: the fuzzy controller alone."""
+
+    name: Literal["fuzzy"] = "fuzzy"
+
+
+class ImprovedFuzzySettings(WeightsSettings, WaysOutSettings):
+    """The improved fuzzy planner: the controller, the guard that caps its step, and ways out."""
+
+    name: Literal["improved-fuzzy"] = "improved-fuzzy"
+
+
+class FuzzyQLambdaSettings(PolicySettings, WaysOutSettings):
+    """The paper's own planner: the improved one, with weights that were learned."""
+
+    name: Literal["fuzzy-q-lambda"] = "fuzzy-q-lambda"
+
+
+class QLearningSettings(PolicySettings):
+    """The direct Q-learning baseline (Eq. 7)."""
+
+    name: Literal["q-learning"] = "q-learning"
+
+
+class QLambdaSettings(PolicySettings):
+    """The direct Q(λ) baseline (Eq. 18)."""
+
+    name: Literal["q-lambda"] = "q-lambda"

@@ -1,0 +1,61 @@
+"""Environments to learn in, which no comparison ever uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.oracle import feasible
+from fuzzyq_bullet.scenario import Drive, Limits, Scenario, random_task, realise
+
+FIRST_SEED = 2**62
+"""Scenarios with seeds from here on are for training. Sweeps stay below."""
+SEEDS_APART = 2**24
+"""Scenario seeds that every seed of a training has to itself: ``TRIES`` for each episode."""
+TRIES = 16
+"""Fields that may be drawn for one episode until one has a way."""
+MOST_SEED = (2**63 - FIRST_SEED) // SEEDS_APART - 1
+"""Greatest seed of a training."""
+MOST_EPISODES = SEEDS_APART // TRIES
+ROOM = 0.22
+"""Radius (m) of the disc for which there must be a way: what the detection lines can see."""
+LIMITS = Limits(time=300.0, steps=5000)
+
+
+@dataclass(frozen=True)
+class Tasks:
+    """Scenarios for the episodes of a training: random ones, or always the same.
+
+    Attributes:
+        drive: What moves the robot.
+        seed: Of the training.
+        counts: Numbers of scattered obstacles, taken in turn.
+        scenario: If given, every episode is this one, its obstacles drawn anew if it draws any.
+    """
+
+    drive: Drive = "wheels"
+    seed: int = 0
+    counts: tuple[int, ...] = (25, 50, 75, 100)
+    scenario: Scenario | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.seed <= MOST_SEED:
+            raise UserError(f"seed: must be from 0 to {MOST_SEED}, got {self.seed}")
+
+    def scenario_of(self, episode: int) -> Scenario:
+        """Return the scenario of an episode, counted from 1, with every obstacle in its place.
+
+        There is a way in it, unless ``TRIES`` fields in a row had none.
+        """
+        first = FIRST_SEED + self.seed * SEEDS_APART + episode * TRIES
+        for seed in range(first, first + TRIES):
+            scenario = realise(self._asked(seed, episode))
+            if feasible(scenario, ROOM):
+                break
+        return scenario
+
+    def _asked(self, seed: int, episode: int) -> Scenario:
+        if self.scenario is not None:
+            return self.scenario.model_copy(update={"seed": seed, "drive": self.drive})
+        task = random_task(seed, count=self.counts[episode % len(self.counts)])
+        return task.model_copy(update={"drive": self.drive, "limits": LIMITS})
