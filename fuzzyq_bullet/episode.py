@@ -10,6 +10,7 @@ import numpy as np
 
 from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.base import Tick
+from fuzzyq_bullet.drives.pilot import Twist
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner, make_planner
@@ -92,11 +93,25 @@ class Episode:
 
     def advance(self, decision: Decision) -> None:
         """Carry out a decision until the next one is due, or the episode is over."""
-        driver = self._driver
-        self._decisions.append((len(driver.ticks) - 1, decision))
-        driver.advance(decision)
-        count, limits = len(self._decisions), self._scenario.limits
-        self.outcome = _outcome(driver, decision, count, limits, self._standstill)
+        self._note(decision)
+        self._driver.advance(decision)
+        self._judge(decision)
+
+    def steer(self, twist: Twist, told: Decision) -> None:
+        """Hold a twist for as long as a decision lasts, or until the episode is over.
+
+        Args:
+            twist: What the wheels aim for.
+            told: What goes on record where a planner's decision would; it moves nothing.
+
+        Raises:
+            ValueError: In the kinematic drive, which has no wheels.
+        """
+        if not isinstance(self._driver, WheelsDriver):
+            raise ValueError(f"a twist needs the drive wheels, not {self._scenario.drive}")
+        self._note(told)
+        self._driver.steer(twist)
+        self._judge(told)
 
     def record(self) -> Trajectory:
         """Return the trajectory of an episode that is over.
@@ -107,6 +122,26 @@ class Episode:
         if self.outcome is None:
             raise ValueError("the episode is not over")
         return recorded(self._scenario, self._driver, self._decisions, self.outcome)
+
+    def so_far(self, told: Decision) -> Trajectory:
+        """Return what has happened until now, for a picture of it.
+
+        Args:
+            told: What is shown of this instant, as if it were decided now.
+
+        Returns:
+            A trajectory; while the episode goes on, one that the time has run out for.
+        """
+        decisions = [*self._decisions, (len(self._driver.ticks) - 1, told)]
+        return recorded(self._scenario, self._driver, decisions, self.outcome or "timeout")
+
+    def _note(self, decision: Decision) -> None:
+        self._decisions.append((len(self._driver.ticks) - 1, decision))
+
+    def _judge(self, decision: Decision) -> None:
+        """See whether the episode is over."""
+        count, limits = len(self._decisions), self._scenario.limits
+        self.outcome = _outcome(self._driver, decision, count, limits, self._standstill)
 
 
 class _Standstill:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
@@ -73,14 +74,32 @@ class WheelsDriver:
 
     def advance(self, decision: Decision) -> None:
         """Follow the decision for one decision period."""
+        self._aim(lambda heading, travelled: self._pilot.twist(decision, heading, travelled))
+
+    def steer(self, twist: Twist) -> None:
+        """Hold a twist for one decision period; in the goal the robot stops by itself.
+
+        The wheels come to it within the robot's acceleration, and never beyond its greatest speed
+        and turn rate.
+        """
+        fastest, quickest = self._limits.max_speed, self._limits.max_turn_rate
+        within = Twist(
+            max(-fastest, min(twist.speed, fastest)),
+            max(-quickest, min(twist.turn_rate, quickest)),
+        )
+        self._aim(lambda heading, travelled: within)
+
+    def _aim(self, twist_at: Callable[[float, float], Twist]) -> None:
+        """Drive for one decision period, or until a contact or the arrival.
+
+        Args:
+            twist_at: The twist to aim for, from the heading (rad) and the path driven since the
+                decision (m).
+        """
         travelled = 0.0
         for _ in range(DECISION_TICKS):
             before = self.ticks[-1]
-            wanted = (
-                STILL
-                if self._in_goal(before)
-                else self._pilot.twist(decision, before.heading, travelled)
-            )
+            wanted = STILL if self._in_goal(before) else twist_at(before.heading, travelled)
             contact = self._drive(wanted)
             self._record()
             now = self.ticks[-1]

@@ -1,0 +1,170 @@
+"""An episode as a Gymnasium environment, whatever is done in it and seen of it."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from gymnasium.error import ResetNeeded
+from gymnasium.spaces import Box
+from numpy.typing import NDArray
+
+from fuzzyq_bullet.episode import Episode
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.gym.picture import picture
+from fuzzyq_bullet.gym.sight import Vector, box_of, vector_of
+from fuzzyq_bullet.gym.tasks import TaskSource
+from fuzzyq_bullet.physics.engine import Engine
+from fuzzyq_bullet.physics.world import World
+from fuzzyq_bullet.training.rewards import Reward
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fuzzyq_bullet.planning import Decision
+    from fuzzyq_bullet.scenario import Scenario
+    from fuzzyq_bullet.trajectory import Trajectory
+
+
+class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
+    """What the environments share: tasks, physics, reward, picture.
+
+    An action is two numbers from −1 to 1; what lies beyond is moved to the bound.
+
+    Args:
+        tasks: Where the scenarios come from.
+        sees: Least value of each element of the observation, by name; the greatest is 1.
+        render_mode: ``rgb_array``, or None for no pictures.
+
+    Raises:
+        UserError: If there is no such render mode.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 (as Gymnasium has it)
+
+    def __init__(
+        self, tasks: TaskSource, sees: Mapping[str, float], *, render_mode: str | None
+    ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise UserError(f"render_mode: must be rgb_array or None, got {render_mode!r}")
+        self.render_mode = render_mode
+        self.observation_space = box_of(sees)
+        self.action_space = Box(-1.0, 1.0, (2,))
+        self._tasks = tasks
+        self._sees = sees
+        self._engine: Engine | None = None
+        self._episode: Episode | None = None
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Vector, dict[str, Any]]:
+        """Begin the next episode.
+
+        Args:
+            seed: Begins a sequence of episodes that is the same every time; without one the
+                sequence goes on.
+            options: There are none.
+
+        Returns:
+            The first observation; the scenario's name and seed.
+
+        Raises:
+            UserError: If any option is given, or no world can be drawn.
+        """
+        super().reset(seed=seed)
+        if options:
+            raise UserError(f"options: there are none, got {', '.join(map(str, options))}")
+        self._episode = None
+        scenario = self._tasks.draw(self.np_random)
+        self._engine = self._engine or Engine()
+        world = World(scenario.obstacles, scenario.arena, engine=self._engine)
+        self._scenario, self._episode = scenario, Episode(world, scenario)
+        self._begin(scenario)
+        return self._observed(), {"scenario": scenario.name, "seed": scenario.seed}
+
+    def step(self, action: NDArray[Any]) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
+        """Act until the next decision is due.
+
+        Returns:
+            The observation; the reward (s); whether the episode ended, in the goal, in a collision
+            or stuck; whether its limits cut it off; and the parts of the ``reward`` by name,
+            ``outcome`` (None while it goes on) and ``is_success``.
+
+        Raises:
+            ValueError: If the action is not two numbers.
+            ResetNeeded: Before the first episode, and after the end of each.
+        """
+        episode, scenario = self._running(), self._scenario
+        if episode.outcome is not None:
+            raise ResetNeeded(
+                f"the episode is over ({episode.outcome}): reset before the next step"
+            )
+        numbers = np.asarray(action, dtype=np.float64)
+        if numbers.shape != (2,) or np.isnan(numbers).any():
+            raise ValueError(f"an action is two numbers from -1 to 1, got {action}")
+        before = episode.now
+        first, second = np.clip(numbers, -1.0, 1.0).tolist()
+        self._act(episode, first, second)
+        now, outcome, goal = episode.now, episode.outcome, scenario.goal.position
+        reward = Reward.of(
+            seconds=now.time - before.time,
+            nearer=math.dist((before.x, before.y), goal) - math.dist((now.x, now.y), goal),
+            max_speed=scenario.robot.max_speed,
+            outcome=outcome,
+        )
+        truncated = outcome == "timeout"
+        told = {
+            "reward": reward.parts(),
+            "outcome": outcome,
+            "is_success": outcome == "goal",
+        }
+        ended = outcome is not None and not truncated
+        return self._observed(), reward.total, ended, truncated, told
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return the map of this instant, RGB, shape (384, 372, 3); None without a render mode."""
+        if self.render_mode is None:
+            return None
+        return picture(self._running().so_far(self._shown()))
+
+    def record(self) -> Trajectory:
+        """Return the trajectory of an episode that is over, to be filmed or measured.
+
+        Raises:
+            ValueError: If it is not over.
+        """
+        return self._running().record()
+
+    def close(self) -> None:
+        """Free the physics; a second call does nothing, and a reset begins anew."""
+        self._episode = None
+        if self._engine is not None:
+            self._engine.close()
+            self._engine = None
+
+    def _running(self) -> Episode:
+        if self._episode is None:
+            raise ResetNeeded("there is no episode yet: reset first")
+        return self._episode
+
+    def _observed(self) -> Vector:
+        return vector_of(self._see(self._running()), self._sees)
+
+    @abstractmethod
+    def _begin(self, scenario: Scenario) -> None:
+        """Make ready for an episode."""
+
+    @abstractmethod
+    def _see(self, episode: Episode) -> dict[str, float]:
+        """Sense, and return the elements of the observation by name."""
+
+    @abstractmethod
+    def _act(self, episode: Episode, first: float, second: float) -> None:
+        """Act until the next decision is due; both numbers of the action are within −1 to 1."""
+
+    @abstractmethod
+    def _shown(self) -> Decision:
+        """Return what a picture shows of this instant."""
