@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from fuzzyq_bullet.planning.base import STEP_UNIT
-from fuzzyq_bullet.planning.settings import WeightsSettings
+from fuzzyq_bullet.planning.settings import RoutineSettings, WeightsSettings
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy import FuzzyController, Inference, RuleTable
@@ -22,7 +22,7 @@ FIRES = 0.01
 """Gaussians never reach 0, so every rule fires a little; below this a rule does not count."""
 WIDE = 80
 """Columns for all of it side by side; with fewer, what stands beside goes below."""
-TURN_UNIT: float = WeightsSettings.model_fields["turn_unit"].default
+TURN_UNIT: float = RoutineSettings.model_fields["turn_unit"].default
 WEIGHTS: tuple[float, float] = WeightsSettings.model_fields["weights"].default
 
 

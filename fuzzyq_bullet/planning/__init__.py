@@ -1,8 +1,11 @@
 """Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
 
+from fuzzyq_bullet.planning import weighing
 from fuzzyq_bullet.planning.base import MODES, Decision, Mode, Motion, Observation, Planner
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.improved import ImprovedFuzzyPlanner
+from fuzzyq_bullet.planning.learned import FuzzyQLambdaPlanner
+from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.registry import (
     DEFAULT_PLANNER,
     make_planner,
@@ -11,6 +14,7 @@ from fuzzyq_bullet.planning.registry import (
     settings_for,
 )
 from fuzzyq_bullet.planning.settings import (
+    FuzzyQLambdaSettings,
     FuzzySettings,
     ImprovedFuzzySettings,
     PlannerSettings,
@@ -22,6 +26,8 @@ __all__ = [
     "MODES",
     "Decision",
     "FuzzyPlanner",
+    "FuzzyQLambdaPlanner",
+    "FuzzyQLambdaSettings",
     "FuzzySettings",
     "ImprovedFuzzyPlanner",
     "ImprovedFuzzySettings",
@@ -40,4 +46,9 @@ __all__ = [
 register_planner("fuzzy", FuzzySettings, lambda settings, rng: FuzzyPlanner(settings))
 register_planner(
     "improved-fuzzy", ImprovedFuzzySettings, lambda settings, rng: ImprovedFuzzyPlanner(settings)
+)
+register_planner(
+    "fuzzy-q-lambda",
+    FuzzyQLambdaSettings,
+    lambda settings, rng: FuzzyQLambdaPlanner(settings, policy_of(settings, weighing.EXPECTED)),
 )

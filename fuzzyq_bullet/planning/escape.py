@@ -20,7 +20,7 @@ from fuzzyq_bullet.planning.places import Places
 from fuzzyq_bullet.planning.sweep import eased, first_free
 
 ENOUGH = 1.0 * STEP_UNIT
-"""c_f: a way free for less than this is blocked (m)."""
+"""c_f of the paper: a way free for less than this is blocked (m)."""
 GAIN = 1.0 * STEP_UNIT
 """By how much nearer than ever before the line to the goal must lead to be taken again (m)."""
 PATIENCE = 2.5
@@ -49,8 +49,16 @@ class Escape:
         self._straight = False
         self._mark = math.nan
 
-    def decide(self, routine: Decision, observation: Observation) -> Decision:
-        """Return the routine's decision while it serves, and another where it does not."""
+    def decide(
+        self, routine: Decision, observation: Observation, enough: float = ENOUGH
+    ) -> Decision:
+        """Return the routine's decision while it serves, and another where it does not.
+
+        Args:
+            routine: What the routine part would do.
+            observation: What it was asked about.
+            enough: c_f: the line to the goal is blocked when it is free for less than this (m).
+        """
         here, goal = observation.position, observation.goal
         to_goal = math.dist(here, goal)
         middle = float(routine.lengths[1])
@@ -60,10 +68,10 @@ class Escape:
 
         if self._exit is not None:
             nearer = middle >= to_goal or to_goal - middle <= self._mark - GAIN
-            if not nearer or middle < min(ENOUGH, to_goal):
+            if not nearer or middle < min(enough, to_goal):
                 return self._follow(routine, observation)
             self._exit, self._straight = None, True
-        blocked = middle < min(ENOUGH, to_goal)
+        blocked = middle < min(enough, to_goal)
         stalled = (
             not self._straight
             and observation.time - self._since > PATIENCE

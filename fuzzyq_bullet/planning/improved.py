@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fuzzyq_bullet.planning.base import Decision, Mode, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Mode, Observation
 from fuzzyq_bullet.planning.escape import Escape
 from fuzzyq_bullet.planning.guard import guarded
 from fuzzyq_bullet.planning.routine import Routine, Situation
@@ -22,6 +22,7 @@ class Weighed:
         self._routine = Routine(settings)
         self._escape = Escape(following=settings.following) if settings.breakout else None
         self._guard = settings.guard
+        self._breakout_at = settings.breakout_at
         self.mode: Mode = "routine"
 
     def sense(self, observation: Observation) -> Situation:
@@ -29,7 +30,11 @@ class Weighed:
         return self._routine.sense(observation)
 
     def act(
-        self, observation: Observation, situation: Situation, weights: tuple[float, float]
+        self,
+        observation: Observation,
+        situation: Situation,
+        weights: tuple[float, float],
+        breakout_at: float | None = None,
     ) -> Decision:
         """Return the decision with these weights, capped by the guard: the second half.
 
@@ -37,10 +42,12 @@ class Weighed:
             observation: What was sensed.
             situation: What ``sense`` made of it.
             weights: (ω1, ω2) of Eq. 17.
+            breakout_at: c_f in units of S_p, if another than that of the settings.
         """
         decision = self._routine.step(situation, weights)
         if self._escape is not None:
-            decision = self._escape.decide(decision, observation)
+            enough = (self._breakout_at if breakout_at is None else breakout_at) * STEP_UNIT
+            decision = self._escape.decide(decision, observation, enough)
         self.mode = decision.mode
         return guarded(decision, observation) if self._guard else decision
 

@@ -58,6 +58,10 @@ class WaysOutSettings(RoutineSettings):
     breakout: Annotated[bool, Strict()] = Field(
         default=True, description="Whether it breaks out of dead ends (4.2)."
     )
+    breakout_at: Annotated[_Number, Field(gt=0.0, le=5.0)] = Field(
+        default=1.0,
+        description="c_f in S_p: with less than this free towards the goal, it breaks out.",
+    )
     following: Annotated[bool, Strict()] = Field(
         default=True, description="Whether it follows large obstacles after a breakout (4.3)."
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from dataclasses import dataclass
 
 from fuzzyq_bullet.errors import UserError
@@ -53,6 +55,16 @@ class Tasks:
             if feasible(scenario, ROOM):
                 break
         return scenario
+
+    def digest(self) -> str:
+        """Return a hash of all that the scenarios depend on."""
+        asked = {
+            "seed": self.seed,
+            "counts": list(self.counts),
+            "limits": LIMITS.model_dump(mode="json"),
+            "scenario": None if self.scenario is None else self.scenario.model_dump(mode="json"),
+        }
+        return hashlib.sha256(json.dumps(asked, sort_keys=True).encode()).hexdigest()[:32]
 
     def _asked(self, seed: int, episode: int) -> Scenario:
         if self.scenario is not None:

@@ -1,0 +1,67 @@
+"""What is weighed in which situation: the states and actions of ``fuzzy-q-lambda``.
+
+The actions are the weights themselves, and the fuzzy rules are what a situation is made of: each
+rule is a feature, present to the degree to which it fires. So Q(s, a) is smooth in what is sensed,
+∂Q/∂w is the firing strengths, and Eqs. 18 and 19 can be computed (``docs/learning.md``).
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from fuzzyq_bullet.fuzzy.paper import RULES
+from fuzzyq_bullet.learning import Expected, Features
+from fuzzyq_bullet.planning.base import Mode
+from fuzzyq_bullet.planning.routine import Situation
+
+
+class Weights(NamedTuple):
+    """What an action is.
+
+    Attributes:
+        step: ω1 of Eq. 17.
+        turn: ω2 of Eq. 17.
+        breakout_at: c_f in units of S_p: with less than this free towards the goal, break out.
+    """
+
+    step: float
+    turn: float
+    breakout_at: float
+
+
+STEPS = (1.0, 2.0)
+TURNS = (0.25, 0.5, 1.0, 1.5)
+BREAKOUTS = (1.0, 3.0, 5.0)
+ACTIONS = tuple(Weights(*one) for one in product(STEPS, TURNS, BREAKOUTS))
+ACTION_NAMES = tuple(f"ω1 {a.step:g}, ω2 {a.turn:g}, c_f {a.breakout_at:g}" for a in ACTIONS)
+
+PARTS = ("routine", "way out")
+STATE_NAMES = tuple(
+    f"{part}: {near} {side}"
+    for part in PARTS
+    for near in RULES["corrected"].row.labels
+    for side in RULES["corrected"].column.labels
+)
+
+
+def features_of(situation: Situation, mode: Mode) -> Features:
+    """Return φ(s), which sums to 1: the firing strengths (Eq. 2), apart for each part at work.
+
+    Args:
+        situation: What is sensed now.
+        mode: Of the decision before.
+    """
+    strengths = situation.inferred.rules.ravel()
+    total = float(strengths.sum())
+    firing = strengths / total if total > 0.0 else np.full(strengths.size, 1.0 / strengths.size)
+    first = 0 if mode == "routine" else strengths.size
+    degrees = np.zeros(len(STATE_NAMES))
+    degrees[first : first + strengths.size] = firing
+    return Features.of(degrees)
+
+
+EXPECTED = Expected("fuzzy-q-lambda", STATE_NAMES, ACTION_NAMES, "linear-q-lambda")
+"""What its policies must look like."""

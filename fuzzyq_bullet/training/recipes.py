@@ -1,0 +1,124 @@
+"""How each planner learns: its problem, its learner, its schedules. One entry a planner."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.learning import (
+    Expected,
+    Learner,
+    LinearQLambda,
+    Policy,
+    Problem,
+    Setup,
+    train,
+)
+from fuzzyq_bullet.learning.checkpoint import Curve
+from fuzzyq_bullet.planning.weighing import EXPECTED as WEIGHTS
+from fuzzyq_bullet.training.tasks import Tasks
+from fuzzyq_bullet.training.weights import WeightsProblem
+from fuzzyq_bullet.version import __version__
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How a planner learns.
+
+    Attributes:
+        planner: Its name.
+        expected: What its policies look like: states, actions, learner.
+        problem: Makes what is to be learned, from the tasks to learn it on.
+        learner: Makes what learns it.
+        setup: How long and how fast, from the number of episodes and the seed.
+    """
+
+    planner: str
+    expected: Expected
+    problem: Callable[[Tasks], Problem[Any]]
+    learner: Callable[[], Learner[Any]]
+    setup: Callable[[int, int], Setup]
+
+
+RECIPES = {
+    one.planner: one
+    for one in (
+        Recipe(
+            planner="fuzzy-q-lambda",
+            expected=WEIGHTS,
+            problem=WeightsProblem,
+            learner=lambda: LinearQLambda(len(WEIGHTS.states), len(WEIGHTS.actions)),
+            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
+        ),
+    )
+}
+
+
+def recipe_of(planner: str) -> Recipe:
+    """Return how a planner learns.
+
+    Raises:
+        UserError: If it does not learn, or does not exist.
+    """
+    if planner not in RECIPES:
+        raise UserError(f"planner: {planner!r} does not learn; those that do: {', '.join(RECIPES)}")
+    return RECIPES[planner]
+
+
+def learn(
+    recipe: Recipe,
+    tasks: Tasks,
+    setup: Setup,
+    *,
+    command: str,
+    checkpoint: Path | None = None,
+    resume: bool = False,
+    on_episode: Callable[[Curve], None] | None = None,
+) -> tuple[Policy, Curve]:
+    """Train a planner.
+
+    Args:
+        recipe: How it learns.
+        tasks: What it learns on.
+        setup: For how long, and how fast.
+        command: What to type to do this again; the policy keeps it.
+        checkpoint: Where to keep how far it is after every episode.
+        resume: Whether to go on from there.
+        on_episode: Called after every episode with the learning curve so far.
+
+    Returns:
+        The policy and the learning curve.
+
+    Raises:
+        UserError: As ``learning.train``.
+    """
+    learner = recipe.learner()
+    made = {"planner": recipe.planner, "drive": tasks.drive, "tasks": tasks.digest()}
+    curve = train(
+        recipe.problem(tasks),
+        learner,
+        setup,
+        made=made,
+        checkpoint=checkpoint,
+        resume=resume,
+        on_episode=on_episode,
+    )
+    described = {**setup.describe(), **learner.describe()}
+    policy = Policy(
+        planner=recipe.planner,
+        learner=str(described.pop("learner")),
+        command=command,
+        seed=setup.seed,
+        version=__version__,
+        drive=tasks.drive,
+        scenario=tasks.digest(),
+        episodes=setup.episodes,
+        parameters={key: described[key] for key in described if key not in ("seed", "episodes")},
+        states=tuple(recipe.expected.states),
+        actions=tuple(recipe.expected.actions),
+        table=learner.table.tolist(),
+    )
+    return policy, curve
