@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzyq_bullet.cli import bench, explain, figure, replay, run, scenarios
+from fuzzyq_bullet.cli import bench, explain, figure, replay, run, scenarios, train
 from fuzzyq_bullet.cli.words import help_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
@@ -36,6 +36,7 @@ _add("replay", replay.replay)
 _add("validate", scenarios.validate)
 _add("schema", scenarios.schema)
 _add("list", scenarios.list_scenarios)
+_add("train", train.train)
 _add("explain", explain.explain, context_settings=explain.CONTEXT_SETTINGS)
 _add("figure", figure.figure)
 app.add_typer(bench.app, name="bench")

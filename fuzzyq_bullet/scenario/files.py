@@ -14,6 +14,7 @@ from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.resources import data_folder
 from fuzzyq_bullet.scenario.checks import find_conflicts
 from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, Scenario
+from fuzzyq_bullet.scenario.policy import policy_problem, with_policy_in
 from fuzzyq_bullet.scenario.problems import (
     MAX_SHOWN,
     MAX_WORDED,
@@ -35,27 +36,33 @@ MAX_BYTES = 2_000_000
 """Largest scenario file: 10 000 boxes, one a line, take about 0.8 MB."""
 
 
-def load_scenario(source: Source) -> Scenario:
+def load_scenario(source: Source, *, policies: bool = True) -> Scenario:
     """Read a scenario from a file, or a bundled one by name, and check that it can be run.
 
     Args:
         source: A path, or the name of a bundled scenario such as ``paper-50``. A file of that
             name wins.
+        policies: Whether the policy that its planner uses must be there and fit; not so for
+            whoever only wants the world of the scenario.
 
     Raises:
         UserError: If it cannot be read or is wrong; one line a mistake:
             ``path:line: key.path: what is wrong; what is allowed``.
     """
     path = find_scenario(source)
-    return parse_scenario(_read(path), str(path))
+    return parse_scenario(_read(path), str(path), folder=path.parent, policies=policies)
 
 
-def parse_scenario(text: str, where: str = "scenario") -> Scenario:
+def parse_scenario(
+    text: str, where: str = "scenario", *, folder: Path | None = None, policies: bool = True
+) -> Scenario:
     """Read a scenario from YAML text and check that it can be run.
 
     Args:
         text: The YAML document.
         where: What to call it in messages, usually its path.
+        folder: In which relative paths in it begin; without one they stay as they are.
+        policies: Whether the policy that its planner uses must be there and fit.
 
     Raises:
         UserError: If it is wrong; one line a mistake.
@@ -81,7 +88,12 @@ def parse_scenario(text: str, where: str = "scenario") -> Scenario:
         problems = problems_of(error, tree.data)
         more = max(0, error.error_count() - MAX_WORDED)
     else:
+        if folder is not None:
+            scenario = with_policy_in(scenario, folder)
         problems = [Problem(loc, message) for loc, message in find_conflicts(scenario)]
+        if policies:
+            unfit = policy_problem(scenario, planner_is_given="planner" in tree.data)
+            problems += [unfit] if unfit else []
         if not problems:
             return scenario
     raise UserError(*_lines(problems, more, tree, where))

@@ -178,6 +178,7 @@ _WORDING: dict[str, Callable[[Any, dict[str, Any]], str]] = {
     "string_too_long": lambda value, context: (
         f"must have at most {context['max_length']} characters, got {len(value)}"
     ),
+    "string_too_short": lambda value, context: "is empty; leave it out or give it a value",
     "string_pattern_mismatch": lambda value, context: (
         f"got {shorten(value)}; allowed: letters, digits, '.', '-' and '_', at most 100, "
         "beginning with a letter or digit"

@@ -1,0 +1,315 @@
+"""``fuzzyq train``: a planner learns, in a way that may be interrupted anywhere and goes on."""
+
+from __future__ import annotations
+
+import shlex
+import time
+from dataclasses import dataclass, field
+from json import dumps
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fuzzyq_bullet.cli.console import progress_bar, say
+from fuzzyq_bullet.cli.process import Stopped
+from fuzzyq_bullet.errors import UserError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fuzzyq_bullet.learning.checkpoint import Curve
+    from fuzzyq_bullet.training.order import Order
+    from fuzzyq_bullet.training.tasks import Tasks
+
+FOLDER = Path("out/train")
+
+
+def train(
+    planner: Annotated[str, typer.Argument(metavar="PLANNER", help="Planner that learns.")],
+    *,
+    episodes: Annotated[int, typer.Option(help="Episodes to learn from.")] = 200,
+    drive: Annotated[str, typer.Option(help="kinematic, or wheels (physics).")] = "kinematic",
+    scenario: Annotated[
+        str | None,
+        typer.Option(help="Learn on this file or bundled scenario, not on random fields."),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the training.")] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Policy to write.", show_default=f"{FOLDER}/PLANNER.json"
+        ),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with a training that was begun.")
+    ] = False,
+    anew: Annotated[
+        bool, typer.Option("--anew", help="Begin again, whatever was begun before.")
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Summary as JSON on stdout, alone.")] = False,
+) -> None:
+    """Train a planner; write PLANNER.json (the policy) and PLANNER.png (the learning curve).
+
+    May be ended at any moment: after every episode PLANNER.checkpoint.npz is renewed, and --resume
+    goes on to the very same policy. To use it, name it in a scenario file:
+    planner: {name: PLANNER, policy: FILE}.
+
+    Raises:
+        UserError: If an option is wrong, a file cannot be written, or what was begun is another
+            training.
+    """
+    # What takes long to load waits until the options are known to be right.
+    if resume and anew:
+        raise UserError("--resume, --anew: give one of them; the first goes on, the other does not")
+    order = _order(planner, episodes, drive, seed, scenario)
+    files = _Files.of(order.planner, out)
+    tasks = _tasks(order)
+    files.check()
+    progress = _Progress(_begun(files.checkpoint, resume=resume, anew=anew))
+
+    from fuzzyq_bullet.training.recipes import learn, recipe_of
+
+    recipe = recipe_of(order.planner)
+    try:
+        with progress_bar("training", order.episodes) as (bar, task):
+
+            def show(note: str, done: int) -> None:
+                bar.update(task, completed=done, note=note)
+
+            show("", progress.before)
+            policy, curve = learn(
+                recipe,
+                tasks,
+                recipe.setup(order.episodes, order.seed),
+                command=order.command,
+                checkpoint=files.checkpoint,
+                resume=resume,
+                on_episode=progress.shown(order.episodes, show),
+            )
+    except Stopped:
+        where = [] if out is None else ["--out", str(out)]
+        again = f"{order.command} {shlex.join([*where, '--resume'])}"
+        say(f"{progress.done} of {order.episodes} episodes are kept; to go on: {again}")
+        raise
+    progress.stop()
+    policy.save(files.policy)
+
+    from fuzzyq_bullet.experiments.figures import learning_curve
+
+    learning_curve.draw(curve, _title(order), files.picture)
+    summary = _summary(order, curve, progress, files)
+    if json:
+        typer.echo(dumps(summary, indent=2))
+    _tell(order, summary)
+
+
+@dataclass(frozen=True)
+class _Files:
+    """What a training writes."""
+
+    policy: Path
+    picture: Path
+    checkpoint: Path
+
+    @classmethod
+    def of(cls, planner: str, out: Path | None) -> _Files:
+        policy = FOLDER / f"{planner}.json" if out is None else out
+        if policy.suffix != ".json":
+            raise UserError(f"--out: give a file that ends in .json, got {str(out or '')!r}")
+        return cls(
+            policy,
+            policy.with_name(f"{policy.stem}.png"),
+            policy.with_name(f"{policy.stem}.checkpoint.npz"),
+        )
+
+    def check(self) -> None:
+        """Make sure that all can be written, before anything is learned."""
+        from fuzzyq_bullet.files import writable_files
+
+        names = [path.name for path in (self.policy, self.picture, self.checkpoint)]
+        writable_files(self.policy.parent, names)
+
+
+@dataclass
+class _Progress:
+    """How far a training is, and how fast.
+
+    Attributes:
+        before: Episodes that were done before this process.
+        done: Episodes that are done.
+        seconds: How long this process trained (s).
+    """
+
+    before: int
+    done: int = 0
+    seconds: float = 0.0
+    _began: float = field(default_factory=time.perf_counter)
+
+    def __post_init__(self) -> None:
+        self.done = self.before
+
+    @property
+    def ran(self) -> int:
+        """Episodes of this process."""
+        return self.done - self.before
+
+    @property
+    def rate(self) -> float | None:
+        """Episodes per second; None when there were none."""
+        return self.ran / self.seconds if self.ran and self.seconds > 0.0 else None
+
+    def shown(self, total: int, show: Callable[[str, int], None]) -> Callable[[Curve], None]:
+        """Return what is to be called after every episode; the clock starts now."""
+        from fuzzyq_bullet.training.curves import WINDOW, success
+
+        self._began = time.perf_counter()
+
+        def update(curve: Curve) -> None:
+            self.done = len(curve)
+            self.stop()
+            recent = curve[-WINDOW:]
+            show(
+                f"episode {self.done} of {total}, {self.rate or 0.0:.1f}/s, "
+                f"goal in {100 * success(recent):.0f} % of the last {len(recent)}",
+                self.done,
+            )
+
+        return update
+
+    def stop(self) -> None:
+        """Read the clock."""
+        self.seconds = time.perf_counter() - self._began
+
+
+def _order(planner: str, episodes: int, drive: str, seed: int, scenario: str | None) -> Order:
+    """Return what is asked for.
+
+    Raises:
+        UserError: If any of it is not allowed; names the option.
+    """
+    from typing import get_args
+
+    from fuzzyq_bullet.learning.policy_fields import MAX_WORDS
+    from fuzzyq_bullet.learning.training import MAX_EPISODES
+    from fuzzyq_bullet.planning import planner_names
+    from fuzzyq_bullet.scenario.models import Drive
+    from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+    from fuzzyq_bullet.training.order import Order
+    from fuzzyq_bullet.training.recipes import RECIPES
+    from fuzzyq_bullet.training.tasks import MOST_SEED
+
+    if planner not in RECIPES:
+        known = planner in planner_names()
+        what = f"{planner} does not learn" if known else f"no planner {shorten(planner)}"
+        hint = "" if known else did_you_mean(planner, RECIPES)
+        raise UserError(f"PLANNER: {what}; {hint}those that learn: {', '.join(RECIPES)}")
+    if not 1 <= episodes <= MAX_EPISODES:
+        raise UserError(f"--episodes: must be from 1 to {MAX_EPISODES}, got {episodes}")
+    if not 0 <= seed <= MOST_SEED:
+        raise UserError(f"--seed: must be from 0 to {MOST_SEED}, got {seed}")
+    drives: tuple[Drive, ...] = get_args(Drive)
+    for known_drive in drives:
+        if drive == known_drive:
+            order = Order(planner, episodes, known_drive, seed, scenario)
+            break
+    else:
+        hint = did_you_mean(drive, drives)
+        raise UserError(
+            f"--drive: no drive {shorten(drive)}; {hint}allowed: {', '.join(sorted(drives))}"
+        )
+    if len(order.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
+        raise UserError(
+            f"--scenario: its path is too long for the policy to hold: {shorten(scenario)}"
+        )
+    return order
+
+
+def _tasks(order: Order) -> Tasks:
+    """Return what is learned on.
+
+    Raises:
+        UserError: If the scenario is wrong.
+    """
+    from fuzzyq_bullet.planning import settings_for
+    from fuzzyq_bullet.scenario import load_scenario, realise
+    from fuzzyq_bullet.training.tasks import Tasks
+
+    if order.scenario is None:
+        return Tasks(drive=order.drive, seed=order.seed)
+    asked = load_scenario(order.scenario, policies=False)
+    # The planner that learns takes the place of the scenario's own, of which nothing is used.
+    settings = settings_for(order.planner).model_validate({"name": order.planner})
+    asked = asked.model_copy(update={"planner": settings})
+    realise(asked)  # now rather than in an episode, should its obstacles find no place
+    return Tasks(drive=order.drive, seed=order.seed, scenario=asked)
+
+
+def _begun(checkpoint: Path, *, resume: bool, anew: bool) -> int:
+    """Return how many episodes of the training that is to go on are done already.
+
+    Raises:
+        UserError: If a training was begun, and it was not said what is to become of it.
+    """
+    from fuzzyq_bullet.learning.checkpoint import Checkpoint
+
+    if anew:
+        return 0
+    try:
+        saved = Checkpoint.find(checkpoint)
+    except UserError as error:
+        raise UserError(f"{error.problems[0]}; --anew begins again") from error
+    if saved is None:
+        return 0
+    done, total = len(saved.curve), saved.plan.get("episodes", 0)
+    if resume:
+        return done
+    if 0 < done != total:
+        raise UserError(
+            f"{checkpoint}: a training was begun, {done} of {total} episodes are done; "
+            "--resume goes on, --anew begins again, another --out leaves it alone"
+        )
+    return 0
+
+
+def _title(order: Order) -> str:
+    where = "random fields" if order.scenario is None else Path(order.scenario).name[:60]
+    return f"{order.planner}: learned on {where} ({order.drive}, seed {order.seed})"
+
+
+def _summary(order: Order, curve: Curve, progress: _Progress, files: _Files) -> dict[str, Any]:
+    from fuzzyq_bullet.training.curves import WINDOW, success
+    from fuzzyq_bullet.version import __version__
+
+    window = min(WINDOW, len(curve))
+    return {
+        "planner": order.planner,
+        "command": order.command,
+        "version": __version__,
+        "episodes": len(curve),
+        "episodes_before": progress.before,
+        "episodes_now": progress.ran,
+        "time_s": round(progress.seconds, 3),
+        "episodes_per_s": progress.rate and round(progress.rate, 3),
+        "window": window,
+        "success_first": success(curve[:window]),
+        "success_last": success(curve[-window:]),
+        "policy": str(files.policy),
+        "picture": str(files.picture),
+        "checkpoint": str(files.checkpoint),
+    }
+
+
+def _tell(order: Order, summary: dict[str, Any]) -> None:
+    rate, before, now = (summary[k] for k in ("episodes_per_s", "episodes_before", "episodes_now"))
+    if now:
+        pace = f"{now} episodes in {summary['time_s']:.1f} s: {rate:.2f} episodes/s"
+        pace += f"; {before} were done already" if before else ""
+    else:
+        pace = f"all {before} episodes were done already"
+    say(f"{order.planner}: {pace} ({order.drive}, seed {order.seed})", style="bold")
+    first, last = (100 * summary[key] for key in ("success_first", "success_last"))
+    window = summary["window"]
+    say(f"goal reached in {first:.0f} % of the first {window} episodes, {last:.0f} % of the last")
+    for key in ("policy", "picture", "checkpoint"):
+        say(f"  {summary[key]}")

@@ -1,0 +1,40 @@
+"""A learning curve in a few numbers: what the bar, the summary and the picture tell of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzyq_bullet.learning.tabular import Floats
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.learning.checkpoint import Curve
+
+WINDOW = 50
+"""Episodes that a running mean looks back at."""
+SUCCESS = b"goal"
+"""The outcome of an episode that went well."""
+
+
+def reached(curve: Curve) -> NDArray[np.bool_]:
+    """Return which episodes reached the goal, shape (N,)."""
+    return np.asarray(curve["outcome"] == SUCCESS)
+
+
+def success(curve: Curve) -> float:
+    """Return the share of episodes that reached the goal; NaN of none."""
+    return float(reached(curve).mean()) if len(curve) else float("nan")
+
+
+def last_mean(values: NDArray[Any], window: int = WINDOW) -> Floats:
+    """Return the mean of every value and those before it, ``window`` in all, shape (N,).
+
+    The first ones have fewer before them, and are means of what there is.
+    """
+    count = len(values)
+    sums = np.concatenate([[0.0], np.cumsum(values, dtype=float)])
+    last = np.arange(1, count + 1)
+    first = np.maximum(last - window, 0)
+    return np.asarray((sums[last] - sums[first]) / (last - first))
