@@ -299,7 +299,12 @@ def test_an_option_that_is_wrong_is_one_line(
     assert len(caught.value.problems) == 1
 
 
-def test_other_options_that_are_wrong(make: Any) -> None:
+def test_other_options_that_are_wrong(make: Any, room: Scenario) -> None:
+    outside = room.model_copy(
+        update={"goal": room.goal.model_copy(update={"position": (9.0, 1.0)})}
+    )
+    with pytest.raises(UserError, match=r"room: goal\.position: .*outside the arena"):
+        NavigationEnv(scenario=outside)
     with pytest.raises(UserError, match=r"drive: .*kinematic"):
         WeightsEnv(drive="wings")
     with pytest.raises(UserError, match="render_mode: must be rgb_array or None, got 'human'"):
@@ -312,13 +317,14 @@ def test_other_options_that_are_wrong(make: Any) -> None:
 
 
 def test_drawn_worlds_have_a_way_and_obey_the_count() -> None:
-    rng = np.random.default_rng(0)
-    source = TaskSource(scenario=None, count=(130, 150), drive="wheels")
+    rng, drive = np.random.default_rng(0), "kinematic"
+    source = TaskSource(scenario=None, count=(130, 150), drive=drive)
     counts = set()
     for _ in range(6):
         scenario = source.draw(rng)
         assert feasible(scenario, 0.22)
         counts.add(len(scenario.obstacles))
+        assert scenario.drive == drive
     assert len(counts) > 1
     assert counts <= set(range(130, 151))
     closed = parse_scenario(
@@ -390,7 +396,7 @@ def test_navigation_sees_what_it_faces(make: Any) -> None:
     while outcome is None:
         seen, reward, _, _, info = env.step(np.array([1.0, 0.0]))
         outcome = info["outcome"]
-    assert outcome == "collision"
+    assert (outcome, info["is_success"]) == ("collision", False)
     assert reward < -29.0
     assert seen[4] < 0.01
 
