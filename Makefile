@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 OUT ?= out
+POLICIES ?= assets/policies
 ARGS ?=
 
 ifdef PYTHON
@@ -22,7 +23,7 @@ SUITABLE := import sys; sys.exit(sys.implementation.name != "cpython" \
 	or not (3, 10) <= sys.version_info[:2] <= (3, 11))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint format lock clean
+.PHONY: help setup demo test lint format policies lock clean
 
 help:
 	@echo 'make demo    drive a scenario and film it: $(OUT)/mixed.mp4'
@@ -30,6 +31,7 @@ help:
 	@echo 'make lint    check style and types'
 	@echo 'make format  put the style right where that can be done without thought'
 	@echo 'make setup   only install; all of the above do so first where it is needed'
+	@echo 'make policies  train again what assets/policies holds, to the same bytes'
 	@echo 'make lock    resolve the dependencies anew into requirements.lock'
 	@echo 'make clean   remove .venv and what tools left behind; videos in $(OUT) stay'
 	@echo 'All take PYTHON=/path/to/python3.11, which may also be a 3.10.'
@@ -50,6 +52,19 @@ lint: $(READY)
 format: $(READY)
 	@$(BIN)/ruff check --fix-only .
 	@$(BIN)/ruff format .
+
+# The commands are the package's to say; each policy then takes the place of the one before. A change
+# in it shows in git. Trained anew each time: a checkpoint knows the version, and not the code.
+policies: $(READY)
+	@set -e; commands=$$($(BIN)/python -m fuzzyq_bullet.training.shipped); \
+	mkdir -p "$(POLICIES)"; \
+	printf '%s\n' "$$commands" | while read -r _ _ planner options; do \
+		made="$(OUT)/policies/$$planner.json"; \
+		echo "fuzzyq train $$planner $$options"; \
+		$(BIN)/fuzzyq train "$$planner" $$options --anew --out "$$made" < /dev/null; \
+		cp "$$made" "$(POLICIES)/$$planner.part"; \
+		mv "$(POLICIES)/$$planner.part" "$(POLICIES)/$$planner.json"; \
+	done
 
 # Versions and hashes alone: where packages come from is for whoever installs them to say.
 lock: $(READY)

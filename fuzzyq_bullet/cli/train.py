@@ -36,7 +36,7 @@ def train(
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of the training.")] = 0,
     out: Annotated[
-        Path | None,
+        str | None,
         typer.Option(
             metavar="FILE", help="Policy to write.", show_default=f"{FOLDER}/PLANNER.json"
         ),
@@ -68,36 +68,13 @@ def train(
     files.check()
     progress = _Progress(_begun(files.checkpoint, resume=resume, anew=anew))
 
-    from fuzzyq_bullet.training.recipes import learn, recipe_of
-
-    recipe = recipe_of(order.planner)
     try:
-        with progress_bar("training", order.episodes) as (bar, task):
-
-            def show(note: str, done: int) -> None:
-                bar.update(task, completed=done, note=note)
-
-            show("", progress.before)
-            policy, curve = learn(
-                recipe,
-                tasks,
-                recipe.setup(order.episodes, order.seed),
-                command=order.command,
-                checkpoint=files.checkpoint,
-                resume=resume,
-                on_episode=progress.shown(order.episodes, show),
-            )
+        curve = _learn(order, tasks, files, progress, resume=resume)
     except Stopped:
-        where = [] if out is None else ["--out", str(out)]
+        where = [] if out is None else ["--out", out]
         again = f"{order.command} {shlex.join([*where, '--resume'])}"
-        say(f"{progress.done} of {order.episodes} episodes are kept; to go on: {again}")
+        say(f"{_kept(files.checkpoint)} of {order.episodes} episodes are kept; to go on: {again}")
         raise
-    progress.stop()
-    policy.save(files.policy)
-
-    from fuzzyq_bullet.experiments.figures import learning_curve
-
-    learning_curve.draw(curve, _title(order), files.picture)
     summary = _summary(order, curve, progress, files)
     if json:
         typer.echo(dumps(summary, indent=2))
@@ -113,10 +90,10 @@ class _Files:
     checkpoint: Path
 
     @classmethod
-    def of(cls, planner: str, out: Path | None) -> _Files:
-        policy = FOLDER / f"{planner}.json" if out is None else out
+    def of(cls, planner: str, out: str | None) -> _Files:
+        policy = FOLDER / f"{planner}.json" if out is None else Path(out)
         if policy.suffix != ".json":
-            raise UserError(f"--out: give a file that ends in .json, got {str(out or '')!r}")
+            raise UserError(f"--out: give a file that ends in .json, got {out!r}")
         return cls(
             policy,
             policy.with_name(f"{policy.stem}.png"),
@@ -270,6 +247,47 @@ def _begun(checkpoint: Path, *, resume: bool, anew: bool) -> int:
             "--resume goes on, --anew begins again, another --out leaves it alone"
         )
     return 0
+
+
+def _kept(checkpoint: Path) -> int:
+    """Return how many episodes are safe on disk."""
+    from fuzzyq_bullet.learning.checkpoint import Checkpoint
+
+    try:
+        saved = Checkpoint.find(checkpoint)
+    except UserError:  # somebody else's by now
+        return 0
+    return len(saved.curve) if saved else 0
+
+
+def _learn(
+    order: Order, tasks: Tasks, files: _Files, progress: _Progress, *, resume: bool
+) -> Curve:
+    """Train, write the policy and the picture, and return the learning curve."""
+    from fuzzyq_bullet.training.recipes import learn, recipe_of
+
+    recipe = recipe_of(order.planner)
+    with progress_bar("training", order.episodes) as (bar, task):
+
+        def show(note: str, done: int) -> None:
+            bar.update(task, completed=done, note=note)
+
+        show("", progress.before)
+        policy, curve = learn(
+            recipe,
+            tasks,
+            recipe.setup(order.episodes, order.seed),
+            command=order.command,
+            checkpoint=files.checkpoint,
+            resume=resume,
+            on_episode=progress.shown(order.episodes, show),
+        )
+    policy.save(files.policy)
+
+    from fuzzyq_bullet.experiments.figures import learning_curve
+
+    learning_curve.draw(curve, _title(order), files.picture)
+    return curve
 
 
 def _title(order: Order) -> str:

@@ -44,9 +44,12 @@ MARKS = {
     "collision": Mark("X", "#D55E00", "collision"),
     "stuck": Mark("s", "#A0478A", "stuck"),
     "timeout": Mark("^", "#E69F00", "out of time"),
-    "going on": Mark("D", "#7C828C", "cut short"),
+    (OTHERWISE := "going on"): Mark("D", "#7C828C", "cut short"),
 }
 """By outcome; the last is an episode that the training itself ended, by its number of steps."""
+
+_OUTLIERS = 0.02
+"""Share of the episodes that may lie so low that they are only hinted at."""
 
 _INK = "#222222"
 _GRID = "#D9DCE1"
@@ -71,6 +74,7 @@ def draw(curve: Curve, title: str, path: Path) -> None:
 def picture(curve: Curve, title: str) -> Figure:
     """Return the figure: above what every episode earned, below the share that reached the goal."""
     figure = Figure(figsize=(9.6, 6.6), dpi=120, layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.12, h_pad=0.1)  # type: ignore[union-attr,call-arg]
     FigureCanvasAgg(figure)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     episodes = np.arange(1, len(curve) + 1)
@@ -79,46 +83,77 @@ def picture(curve: Curve, title: str) -> Figure:
     below.set_xlabel("episode", fontsize=12)
     margin = max(0.5, 0.01 * len(curve))
     below.set_xlim(1 - margin, len(curve) + margin)
-    below.xaxis.set_major_locator(MaxNLocator("auto", integer=True))
+    below.xaxis.set_major_locator(MaxNLocator("auto", integer=True, min_n_ticks=1))
     figure.suptitle(title, fontsize=14, weight="bold", color=_INK)
     return figure
 
 
 def _returns(axes: Axes, episodes: NDArray[np.int64], curve: Curve) -> None:
     size = 26 if len(curve) <= 400 else 10
+    totals, floor = curve["total"], _floor(curve["total"])
     outcomes = np.char.decode(curve["outcome"], "ascii")
-    for outcome, mark in MARKS.items():
-        ended = outcomes == outcome
+    kinds = np.where(np.isin(outcomes, list(MARKS)), outcomes, OTHERWISE)
+    for kind, mark in MARKS.items():
+        ended = kinds == kind
         if ended.any():
             axes.scatter(
-                episodes[ended], curve["total"][ended], s=size, marker=mark.shape,
-                facecolor=mark.colour, edgecolor="white", linewidth=0.4, alpha=0.75,
-                label=f"{mark.words} ({ended.sum()})", zorder=3,
+                episodes[ended], np.maximum(totals[ended], floor), s=size, marker=mark.shape,
+                facecolor=mark.colour, edgecolor="white", linewidth=0.4, alpha=0.8,
+                label=f"{mark.words} ({ended.sum()})", zorder=5, clip_on=False,
             )  # fmt: skip
+    mean = last_mean(totals)
     axes.plot(
-        episodes, last_mean(curve["total"]), color=_INK, lw=2.4, zorder=4, label=_mean_of(curve)
+        episodes, mean, color=_INK, lw=2.4, marker=_alone(curve), label=_mean_of(curve), zorder=6
     )
+    if floor > totals.min():
+        axes.set_ylim(bottom=floor)
+        axes.annotate(
+            f"marks on the lower edge: lower still, down to {_plain(totals.min())} s", (0.0, 0.0),
+            (6, 9), xycoords="axes fraction", textcoords="offset points", fontsize=10, zorder=7,
+            color=_INK, bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
+        )  # fmt: skip
     axes.set_ylabel("return of an episode (s)", fontsize=12)
     _house(axes)
     axes.legend(
         loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False, fontsize=11,
-        columnspacing=1.4, handletextpad=0.4, handlelength=1.4,
+        columnspacing=1.4, handletextpad=0.4, handlelength=1.4, markerscale=(26 / size) ** 0.5,
     )  # fmt: skip
+
+
+def _floor(totals: NDArray[np.float64]) -> float:
+    """Return the least return that gets a height of its own.
+
+    One episode that ran out of time must not press all others into a line. But where the few
+    lowest do not lie far below the rest, all are shown where they are.
+    """
+    lowest, highest = float(totals.min()), float(totals.max())
+    low = min(float(np.quantile(totals, _OUTLIERS)), float(last_mean(totals).min()))
+    low -= 0.1 * (highest - low)
+    return low if highest - lowest > 2.0 * (highest - low) else lowest
 
 
 def _success(axes: Axes, episodes: NDArray[np.int64], curve: Curve) -> None:
     share = last_mean(reached(curve))
-    axes.fill_between(episodes, share, color="#009E73", alpha=0.18, lw=0, zorder=2)
-    axes.plot(episodes, share, color="#00795A", lw=2.4, zorder=3)
+    axes.fill_between(episodes, share, color="#009E73", alpha=0.18, lw=0)
+    axes.plot(episodes, share, color="#00795A", lw=2.4, marker=_alone(curve), clip_on=False)
     axes.set_ylim(0.0, 1.04)
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
     axes.set_ylabel(f"goal reached,\n{_mean_of(curve)}", fontsize=12)
     _house(axes)
     axes.annotate(
-        f"{100 * share[-1]:.0f} %", (float(episodes[-1]), float(share[-1])), (-4, -8),
-        textcoords="offset points", ha="right", va="top", fontsize=12, weight="bold",
-        color="#00523D",
+        f"{100 * share[-1]:.0f} %", (1.0, float(share[-1])), (4, 0),
+        xycoords=("axes fraction", "data"), textcoords="offset points", ha="left", va="center",
+        fontsize=12, weight="bold", color="#00523D",
     )  # fmt: skip
+
+
+def _plain(number: float) -> str:
+    return f"{number:.0f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _alone(curve: Curve) -> str:
+    """Return the mark of a line's points: a line of one point would not be seen without."""
+    return "o" if len(curve) == 1 else ""
 
 
 def _mean_of(curve: Curve) -> str:
