@@ -34,6 +34,7 @@ from fuzzyq_bullet.gym.weights import WeightsEnv
 from fuzzyq_bullet.oracle import feasible
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.scenario import Scenario, load_scenario, parse_scenario, realise, with_options
+from fuzzyq_bullet.video import style
 
 ROOT = Path(__file__).resolve().parent.parent
 WITHOUT = "the extra rl is not installed"
@@ -240,6 +241,7 @@ def test_a_picture_shows_the_robot_where_it_is(name: str, make: Any, room: Scena
     before = env.render()
     assert (before.shape, before.dtype) == ((384, 372, 3), np.uint8)
     assert (env.render() == before).all()
+    assert (before == style.MIDDLE).all(axis=-1).any(), "what it senses is drawn from the start"
     for _ in range(6):
         seen, *_ = env.step(np.array([1.0, 0.0]))
     after = env.render()
@@ -401,6 +403,19 @@ def test_navigation_sees_what_it_faces(make: Any) -> None:
     assert seen[4] < 0.01
 
 
+def test_navigation_tells_left_from_right(make: Any) -> None:
+    along_a_wall = parse_scenario(
+        "name: along\narena: {size: [4.0, 4.0]}\n"
+        "start: {position: [2.0, 0.7], heading: 0.0}\ngoal: {position: [0.5, 0.7]}\n"
+    )
+    seen, _ = make("fuzzyq_bullet/Navigation-v0", scenario=along_a_wall).reset()
+    left, middle, right, ahead_left, ahead, ahead_right = seen[:6].tolist()
+    # The wall is to the right of where the robot faces, and to the left of the way to the goal.
+    assert ahead_right < ahead_left == ahead == 1.0
+    assert left == pytest.approx(ahead_right)
+    assert middle == right == 1.0
+
+
 def test_a_drive_of_navigation_can_be_kept_and_filmed(make: Any, room: Scenario) -> None:
     env = make("fuzzyq_bullet/Navigation-v0", scenario=with_options(room, drive="kinematic"))
     env.reset()
@@ -434,7 +449,7 @@ def test_a_twist_needs_wheels_and_stays_within_the_robots_limits(room: Scenario)
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 def test_constant_weights_are_the_improved_planner(drive: str, make: Any) -> None:
-    settings = {"name": "improved-fuzzy", "weights": (1.25, 0.75)}
+    settings = {"name": "improved-fuzzy", "weights": (1.25, 0.75), "turn_unit": 0.8}
     trap = realise(load_scenario("u-shape")).model_dump()
     scenario = Scenario.model_validate({**trap, "planner": settings, "drive": drive})
     env = make("fuzzyq_bullet/Weights-v0", scenario=scenario, drive=drive)
