@@ -350,9 +350,9 @@ def test_a_policy_that_nobody_named_has_a_place_too(
     monkeypatch.setattr("fuzzyq_bullet.planning.policies.shipped", lambda name: tmp_path / name)
     text = "name: bad\nstart: {position: [1, 1]}\ngoal: {position: [9, 9]}\n"
     with pytest.raises(UserError) as caught:
-        parse_scenario(f"{text}planner: {planner}\n")
+        parse_scenario(f"{text}planner: {planner}\n", policies=True)
     assert caught.value.problems[0].startswith(f"scenario:{place}")
-    assert parse_scenario(text + "planner: fuzzy-q-lambda\n", policies=False).name == "bad"
+    assert parse_scenario(text + "planner: fuzzy-q-lambda\n").name == "bad"
 
 
 # --- what is shown

@@ -54,7 +54,7 @@ def load_scenario(source: Source, *, policies: bool = True) -> Scenario:
 
 
 def parse_scenario(
-    text: str, where: str = "scenario", *, folder: Path | None = None, policies: bool = True
+    text: str, where: str = "scenario", *, folder: Path | None = None, policies: bool = False
 ) -> Scenario:
     """Read a scenario from YAML text and check that it can be run.
 
@@ -62,7 +62,8 @@ def parse_scenario(
         text: The YAML document.
         where: What to call it in messages, usually its path.
         folder: In which relative paths in it begin; without one they stay as they are.
-        policies: Whether the policy that its planner uses must be there and fit.
+        policies: Whether the policy that its planner uses must be there and fit. Text alone means
+            the same whatever files there are.
 
     Raises:
         UserError: If it is wrong; one line a mistake.
