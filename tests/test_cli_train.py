@@ -327,7 +327,7 @@ def test_a_policy_that_cannot_be_used_is_one_line_with_its_place_in_the_scenario
 def test_who_learns_needs_no_policy_to_begin_with(
     whole: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = scenario_in(tmp_path, "nowhere.json")
+    path = scenario_in(tmp_path, "nowhere.json").rename(tmp_path / "$x^ \N{SNOWMAN}\udcff.yaml")
     monkeypatch.chdir(tmp_path)
     call("train", PLANNER, "--scenario", path.name, "--episodes", "1")
     policy = load_policy(tmp_path / "out/train/fuzzy-q-lambda.json")

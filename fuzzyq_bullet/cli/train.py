@@ -286,12 +286,13 @@ def _learn(
 
     from fuzzyq_bullet.experiments.figures import learning_curve
 
-    learning_curve.draw(curve, _title(order), files.picture)
+    learning_curve.draw(curve, _title(order, tasks), files.picture)
     return curve
 
 
-def _title(order: Order) -> str:
-    where = "random fields" if order.scenario is None else Path(order.scenario).name[:60]
+def _title(order: Order, tasks: Tasks) -> str:
+    # A scenario's name is of plain letters; its path may hold what no font can show.
+    where = "random fields" if tasks.scenario is None else tasks.scenario.name
     return f"{order.planner}: learned on {where} ({order.drive}, seed {order.seed})"
 
 
