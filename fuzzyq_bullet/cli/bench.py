@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from fuzzyq_bullet.cli.bench_escape import escape
+from fuzzyq_bullet.cli.bench_learning import learning
 from fuzzyq_bullet.cli.words import help_of
 
 app = typer.Typer(help="Measure the project itself.", no_args_is_help=True)
@@ -49,3 +50,4 @@ def speed(
 
 
 app.command("escape", help=help_of(escape))(escape)
+app.command("learning", help=help_of(learning))(learning)

@@ -1,0 +1,1 @@
+"""What learning gains: learned weights beside fixed ones, on environments no training saw."""
