@@ -46,7 +46,8 @@ def run(
     from fuzzyq_bullet.files import writable_files, write_text
     from fuzzyq_bullet.scenario import load_scenario, realise
 
-    asked = _with_options(load_scenario(scenario), planner=planner, seed=seed, drive=drive)
+    given = load_scenario(scenario, policies=planner is None)  # another planner has its own
+    asked = _with_options(given, planner=planner, seed=seed, drive=drive)
     task = realise(asked)
     names = [film_name(task.name, speed), f"{task.name}.npz", f"{task.name}.json"]
     mp4, npz, result_file = written = writable_files(out, names)

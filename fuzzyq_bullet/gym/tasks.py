@@ -55,7 +55,9 @@ class TaskSource:
         if not isinstance(scenario, (Scenario, str, os.PathLike)):
             kind = type(scenario).__name__
             raise UserError(f"scenario: must be a Scenario, a path or a name, got {kind}")
-        given = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
+        given = (
+            scenario if isinstance(scenario, Scenario) else load_scenario(scenario, policies=False)
+        )
         check(given)
         self._fixed = with_options(given, drive=drive)
 

@@ -190,6 +190,12 @@ class World:
             flags=self._api.GEOM_FORCE_CONCAVE_TRIMESH,
             physicsClientId=client,
         )
+        # PyBullet never lets go of the two lists. Emptied, they cost a fifth of the megabyte that
+        # every world of a long training would otherwise leave behind.
+        for vertex in vertices:
+            vertex.clear()
+        vertices.clear()
+        triangles.clear()
         body: int = self._api.createMultiBody(0.0, shape, physicsClientId=client)
         return body
 

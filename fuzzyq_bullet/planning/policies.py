@@ -31,9 +31,13 @@ def policy_of(settings: PolicySettings, expected: Expected) -> Policy:
         state = path.stat()
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
+        remedy = (
+            "install fuzzyq_bullet again, or make policies in its checkout"
+            if settings.policy is None
+            else f"make one with fuzzyq train {settings.name}"
+        )
         raise UserError(
-            f"{path}: the policy of {settings.name} cannot be read: {why}; make one with "
-            f"fuzzyq train {settings.name}"
+            f"{path}: the policy of {settings.name} cannot be read: {why}; {remedy}"
         ) from error
     policy = _loaded(path, state.st_mtime_ns, state.st_size)
     expected.check(policy, str(path))

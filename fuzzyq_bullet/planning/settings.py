@@ -71,7 +71,8 @@ class PolicySettings(PlannerSettings):
     """Where a planner that has learned takes what it learned from."""
 
     policy: Annotated[str, Strict(), Field(min_length=1, max_length=4096)] | None = Field(
-        default=None, description="A policy file (fuzzyq train); by default the one shipped."
+        default=None,
+        description="Policy file, relative to that of the scenario; by default the one shipped.",
     )
 
 

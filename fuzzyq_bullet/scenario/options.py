@@ -56,7 +56,7 @@ def with_options(
 def _settings_of(planner: str, before: PlannerSettings) -> PlannerSettings:
     """Return the settings of a planner with what was set for another; it drives alike thus."""
     model = settings_for(planner)
-    known = model.model_fields.keys() - {"name"}
+    known = model.model_fields.keys() - {"name", "policy"}  # what another learned never fits
     kept = before.model_dump(include=known, exclude_unset=True)
     try:
         return model.model_validate({**kept, "name": planner})
