@@ -136,8 +136,8 @@ def learning(
         from rich.console import Console
 
         # A narrow terminal may break lines, but no figure is cut off.
-        console = Console(highlight=False)
-        console.print(as_tables(summary, about), width=max(WIDTH, console.width), crop=False)
+        width = max(WIDTH, Console().width)
+        Console(highlight=False, width=width).print(as_tables(summary, about))
     for path in (tried.table, done.table, text, image):
         say(f"  {path}")
     missed = [str(one) for one in summary.targets if not one.met]

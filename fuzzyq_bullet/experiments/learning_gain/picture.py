@@ -55,6 +55,9 @@ def picture(summary: Summary, ratios: Mapping[int, Sequence[float]], title: str)
     left, right = figure.subplots(1, 2, width_ratios=(3, 2))
     _environments(left, summary, ratios)
     _intervals(right, summary)
+    figure.legend(
+        *left.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=9
+    )
     return figure
 
 
@@ -86,7 +89,6 @@ def _environments(axes: Axes, summary: Summary, ratios: Mapping[int, Sequence[fl
     axes.set_xlim(-0.5, len(names) - 0.5)
     axes.set_xlabel("obstacles")
     axes.set_ylabel("time to goal, learned ÷ best pair")
-    axes.legend(fontsize=8, loc="upper left", framealpha=0.9)
     _plain(axes, "y")
 
 
@@ -102,10 +104,11 @@ def _intervals(axes: Axes, summary: Summary) -> None:
             axes.annotate(
                 told, (one.time.value, place), (0, 11), textcoords="offset points", ha="center",
                 fontsize=8, color=_INK,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
             )  # fmt: skip
     axes.set_yticks(
         range(len(summary.against)),
-        [f"{one.role}\n{_weights(one.planner)}" for one in summary.against],
+        [_named(one.role, one.planner) for one in summary.against],
     )
     axes.set_ylim(len(summary.against) - 0.5, -0.7)
     axes.margins(x=0.25)
@@ -114,9 +117,10 @@ def _intervals(axes: Axes, summary: Summary) -> None:
     _plain(axes, "x")
 
 
-def _weights(planner: str) -> str:
-    """Return the weights of a fixed planner; nothing where its role already says them."""
-    return planner.removeprefix("fixed-").replace("-", "/")
+def _named(role: str, planner: str) -> str:
+    """Return what another planner is there for, and its weights where that does not say them."""
+    weights = planner.removeprefix("fixed-").replace("-", "/")
+    return role if weights == role else f"{role}\n{weights}"
 
 
 def _bounds(axes: Axes, line: object) -> None:

@@ -85,20 +85,23 @@ def difference_of_shares(ours: Sequence[bool], theirs: Sequence[bool]) -> Estima
         ours: One for each environment.
         theirs: The same environments in the same order.
     """
-    from scipy.stats import binomtest
-
     pairs = len(ours)
     if not pairs:
         return None
     gained = sum(one and not two for one, two in zip(ours, theirs, strict=True))
     lost = sum(two and not one for one, two in zip(ours, theirs, strict=True))
-    gain, loss = (
-        binomtest(number, pairs).proportion_ci((1.0 + LEVEL) / 2, method="exact")
-        for number in (gained, lost)
-    )
-    return Estimate(
-        (gained - lost) / pairs, float(gain.low - loss.high), float(gain.high - loss.low), pairs
-    )
+    gain, loss = (_clopper_pearson(number, pairs, (1.0 + LEVEL) / 2) for number in (gained, lost))
+    return Estimate((gained - lost) / pairs, gain[0] - loss[1], gain[1] - loss[0], pairs)
+
+
+def _clopper_pearson(number: int, pairs: int, level: float) -> tuple[float, float]:
+    """Return the exact interval of a share of which ``number`` among ``pairs`` were seen."""
+    from scipy.special import betaincinv  # scipy.stats would take two seconds to load
+
+    rare = (1.0 - level) / 2
+    low = betaincinv(number, pairs - number + 1, rare) if number else 0.0
+    high = betaincinv(number + 1, pairs - number, 1.0 - rare) if number < pairs else 1.0
+    return float(low), float(high)
 
 
 def _resampled(

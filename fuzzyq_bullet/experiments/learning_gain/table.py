@@ -32,6 +32,8 @@ from fuzzyq_bullet.experiments.sweep.rows import Row
 LEAST_GAIN = 0.95
 """Most that the learned planner's mean time may be, in times of the best pair's."""
 
+Dice: TypeAlias = Callable[[], np.random.Generator]
+"""Gives a generator in the same state every time: the same pairs have the same interval."""
 _Figure: TypeAlias = Callable[[Row], "float | None"]
 
 
@@ -128,7 +130,7 @@ class Against:
     clearance: Estimate | None
 
     @classmethod
-    def of(cls, role: str, planner: str, table: ByPlanner, rng: np.random.Generator) -> Against:
+    def of(cls, role: str, planner: str, table: ByPlanner, dice: Dice) -> Against:
         """Return the comparison of the learned planner with another."""
         ours, theirs = table[LEARNED], table[planner]
         feasible, everywhere = sorted(feasible_runs(table)), sorted(ours)
@@ -144,11 +146,11 @@ class Against:
                 [bool(ours[run].collisions) for run in everywhere],
                 [bool(theirs[run].collisions) for run in everywhere],
             ),
-            time=ratio_of_means(*times, rng),
-            usual_time=median_of_ratios(*times, rng),
-            steps=ratio_of_means(*_pairs(both, lambda row: row.steps), rng),
-            path=ratio_of_means(*_pairs(both, path_ratio), rng),
-            clearance=mean_of_differences(*_pairs(both, lambda row: row.min_clearance_m), rng),
+            time=ratio_of_means(*times, dice()),
+            usual_time=median_of_ratios(*times, dice()),
+            steps=ratio_of_means(*_pairs(both, lambda row: row.steps), dice()),
+            path=ratio_of_means(*_pairs(both, path_ratio), dice()),
+            clearance=mean_of_differences(*_pairs(both, lambda row: row.min_clearance_m), dice()),
         )
 
 
@@ -241,13 +243,18 @@ def summary_of(
     table = by_planner(rows)
     if any(table.get(name, {}).keys() != table[LEARNED].keys() for name in roles.values()):
         raise ValueError("not every planner has a row for every environment")
+    seed = int(rng.integers(2**63))
     feasible = feasible_runs(table)
     common = solved_by_all(table, {*roles.values(), LEARNED})
     lines = tuple(
         Line(role, name, Figures.of(table[name], feasible, common))
         for role, name in (*roles.items(), (LEARNED, LEARNED))
     )
-    against = tuple(Against.of(role, name, table, rng) for role, name in roles.items())
+
+    def dice() -> np.random.Generator:
+        return np.random.default_rng(seed)
+
+    against = tuple(Against.of(role, name, table, dice) for role, name in roles.items())
     headline = next(one for one in against if one.role == pair)
     return Summary(
         environments=len(table[LEARNED]),
@@ -255,7 +262,7 @@ def summary_of(
         common=len(common),
         lines=lines,
         against=against,
-        counts=_by_count(table, roles[pair], rng),
+        counts=_by_count(table, roles[pair], dice),
         targets=_targets(headline, lines),
     )
 
@@ -271,7 +278,7 @@ def time_ratios(rows: Iterable[Row], other: str) -> dict[int, list[float]]:
     return dict(sorted(ratios.items()))
 
 
-def _by_count(table: ByPlanner, pair: str, rng: np.random.Generator) -> tuple[AtCount, ...]:
+def _by_count(table: ByPlanner, pair: str, dice: Dice) -> tuple[AtCount, ...]:
     feasible = feasible_runs(table)
     lines = []
     for count in sorted({row.count or 0 for row in table[LEARNED].values()}):
@@ -288,7 +295,7 @@ def _by_count(table: ByPlanner, pair: str, rng: np.random.Generator) -> tuple[At
                 feasible=len(here),
                 ours=sum(one.success for one, _ in both),
                 theirs=sum(two.success for _, two in both),
-                time=ratio_of_means(*_pairs(solved, lambda row: row.time_s), rng),
+                time=ratio_of_means(*_pairs(solved, lambda row: row.time_s), dice()),
             )
         )
     return tuple(lines)
