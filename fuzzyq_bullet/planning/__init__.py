@@ -1,7 +1,8 @@
 """Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
 
-from fuzzyq_bullet.planning import weighing
+from fuzzyq_bullet.planning import direct, weighing
 from fuzzyq_bullet.planning.base import MODES, Decision, Mode, Motion, Observation, Planner
+from fuzzyq_bullet.planning.direct import DirectPlanner
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.improved import ImprovedFuzzyPlanner
 from fuzzyq_bullet.planning.learned import FuzzyQLambdaPlanner
@@ -18,6 +19,8 @@ from fuzzyq_bullet.planning.settings import (
     FuzzySettings,
     ImprovedFuzzySettings,
     PlannerSettings,
+    QLambdaSettings,
+    QLearningSettings,
     RoutineSettings,
 )
 
@@ -25,6 +28,7 @@ __all__ = [
     "DEFAULT_PLANNER",
     "MODES",
     "Decision",
+    "DirectPlanner",
     "FuzzyPlanner",
     "FuzzyQLambdaPlanner",
     "FuzzyQLambdaSettings",
@@ -36,6 +40,8 @@ __all__ = [
     "Observation",
     "Planner",
     "PlannerSettings",
+    "QLambdaSettings",
+    "QLearningSettings",
     "RoutineSettings",
     "make_planner",
     "planner_names",
@@ -46,6 +52,18 @@ __all__ = [
 register_planner("fuzzy", FuzzySettings, lambda settings, rng: FuzzyPlanner(settings))
 register_planner(
     "improved-fuzzy", ImprovedFuzzySettings, lambda settings, rng: ImprovedFuzzyPlanner(settings)
+)
+register_planner(
+    "q-learning",
+    QLearningSettings,
+    lambda settings, rng: DirectPlanner(
+        settings, policy_of(settings, direct.EXPECTED["q-learning"])
+    ),
+)
+register_planner(
+    "q-lambda",
+    QLambdaSettings,
+    lambda settings, rng: DirectPlanner(settings, policy_of(settings, direct.EXPECTED["q-lambda"])),
 )
 register_planner(
     "fuzzy-q-lambda",

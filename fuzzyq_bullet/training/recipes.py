@@ -14,11 +14,17 @@ from fuzzyq_bullet.learning import (
     LinearQLambda,
     Policy,
     Problem,
+    QLambda,
+    QLearning,
     Setup,
     train,
 )
 from fuzzyq_bullet.learning.checkpoint import Curve
+from fuzzyq_bullet.planning.direct import ACTION_NAMES as HEADINGS
+from fuzzyq_bullet.planning.direct import EXPECTED as DIRECT
+from fuzzyq_bullet.planning.direct import STATE_NAMES as DIRECT_STATES
 from fuzzyq_bullet.planning.weighing import EXPECTED as WEIGHTS
+from fuzzyq_bullet.training.direct import DirectProblem
 from fuzzyq_bullet.training.tasks import Tasks
 from fuzzyq_bullet.training.weights import WeightsProblem
 from fuzzyq_bullet.version import __version__
@@ -46,6 +52,20 @@ class Recipe:
 RECIPES = {
     one.planner: one
     for one in (
+        Recipe(
+            planner="q-learning",
+            expected=DIRECT["q-learning"],
+            problem=DirectProblem,
+            learner=lambda: QLearning(len(DIRECT_STATES), len(HEADINGS)),
+            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
+        ),
+        Recipe(
+            planner="q-lambda",
+            expected=DIRECT["q-lambda"],
+            problem=DirectProblem,
+            learner=lambda: QLambda(len(DIRECT_STATES), len(HEADINGS)),
+            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
+        ),
         Recipe(
             planner="fuzzy-q-lambda",
             expected=WEIGHTS,

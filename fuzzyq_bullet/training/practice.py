@@ -1,0 +1,86 @@
+"""One episode of a training after the other: a world, what is seen in it, what a decision earns."""
+
+from __future__ import annotations
+
+import math
+
+from fuzzyq_bullet.drives.base import Tick
+from fuzzyq_bullet.episode import Episode
+from fuzzyq_bullet.physics.engine import Engine
+from fuzzyq_bullet.physics.world import World
+from fuzzyq_bullet.planning.base import Decision, Observation
+from fuzzyq_bullet.scenario.models import Limits, Start
+from fuzzyq_bullet.training.rewards import Reward
+from fuzzyq_bullet.training.tasks import Tasks
+
+
+class Practice:
+    """What all problems share that are learned by driving.
+
+    Args:
+        tasks: Where it is learned.
+        hits_end: Whether an episode is over with the first contact. If not, the robot is put back
+            to where it decided, at rest, and goes on: the contact has cost what it costs, and the
+            clock runs on.
+    """
+
+    def __init__(self, tasks: Tasks, *, hits_end: bool = True) -> None:
+        self._tasks = tasks
+        self._hits_end = hits_end
+        self._engine: Engine | None = None
+
+    def begin(self, episode: int) -> None:
+        """Begin an episode, counted from 1."""
+        if self._engine is None:
+            self._engine = Engine()
+        self._scenario = scenario = self._tasks.scenario_of(episode)
+        self._world = World(scenario.obstacles, scenario.arena, engine=self._engine)
+        self._episode = Episode(self._world, scenario)
+        self._decided = 0
+        self._hit = False
+
+    def observe(self) -> Observation:
+        """Return what a planner may know now."""
+        return self._episode.observe()
+
+    def advance(self, decision: Decision) -> Reward:
+        """Carry out a decision and return what it earns."""
+        before, goal = self._episode.now, self._scenario.goal.position
+        self._episode.advance(decision)
+        self._decided += 1
+        now, outcome = self._episode.now, self._episode.outcome
+        if outcome == "collision" and not self._hits_end:
+            self._put_back(before)
+        here = self._episode.now
+        return Reward.of(
+            seconds=now.time - before.time,
+            nearer=math.dist((before.x, before.y), goal) - math.dist((here.x, here.y), goal),
+            max_speed=self._scenario.robot.max_speed,
+            outcome=outcome,
+        )
+
+    @property
+    def over(self) -> bool:
+        """Whether the episode has ended."""
+        return self._episode.outcome is not None
+
+    @property
+    def outcome(self) -> str:
+        """How the episode stands; ``collision`` once anything was hit, whatever came after."""
+        return "collision" if self._hit else self._episode.outcome or "going on"
+
+    def _put_back(self, tick: Tick) -> None:
+        """Go on from an earlier tick, unless the episode's time or decisions are used up."""
+        self._hit = True
+        time = self._scenario.limits.time - self._episode.now.time
+        steps = self._scenario.limits.steps - self._decided
+        if time <= 0.0 or steps <= 0:
+            return
+        self._scenario = self._scenario.model_copy(
+            update={
+                "start": Start(position=(tick.x, tick.y), heading=tick.heading),
+                "limits": Limits(time=time, steps=steps),
+            }
+        )
+        self._episode = Episode(self._world, self._scenario)
+        self._decided = 0
