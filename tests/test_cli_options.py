@@ -40,7 +40,9 @@ def test_another_planner_keeps_what_the_scenario_sets(before: str, after: str) -
 
 
 def test_what_the_other_planner_does_not_know_is_left_out_and_what_was_not_set_is_its_own() -> None:
-    planner = with_options(asked(weights=[1.0, 1.0], guard=False), planner="fuzzy").planner
+    planner = with_options(
+        asked(name="improved-fuzzy", weights=[1.0, 1.0], guard=False), planner="fuzzy"
+    ).planner
     default = registry.settings_for("fuzzy").model_validate({"name": "fuzzy"})
     assert planner == default.model_copy(update={"weights": (1.0, 1.0)})
     back = with_options(asked(name="fuzzy", samples=7), planner="improved-fuzzy").planner

@@ -158,7 +158,8 @@ def test_every_bundled_scenario_fits_the_schema(validator, path):
     [
         {},
         {"planner": DEFAULT_PLANNER},
-        {"planner": {"weights": [1, 0.5]}},
+        {"planner": {"name": "fuzzy", "weights": [1, 0.5]}},
+        {"planner": {"turn_unit": 0.9}},
         *({"planner": {"name": name}} for name in planner_names()),
         {"random": None},
         {"start": {"position": [1, 5], "heading": None}},
@@ -187,7 +188,8 @@ def test_what_the_models_accept_fits_the_schema(validator, rest):
         {"planner": "no-such"},
         {"planner": {"name": "no-such"}},
         {"planner": {"no_such": 1}},
-        {"planner": {"weights": [0, 1]}},
+        {"planner": {"name": "fuzzy", "weights": [0, 1]}},
+        {"planner": {"weights": [1, 1]}},
     ],
 )
 def test_what_the_models_refuse_does_not_fit_the_schema(validator, rest):

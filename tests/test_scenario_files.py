@@ -91,7 +91,11 @@ def test_the_least_scenario_is_read_with_defaults():
         ("robot: {max_speed: 1.01}", "x.yaml:4: robot.max_speed: must be at most 1, got 1.01"),
         ("description: 5", "x.yaml:4: description: expected text, got 5; put it in quotes"),
         ("random: {radius: 0.2}", "x.yaml:4: random.count: is required"),
-        ("planner: {weights: [1, x]}", "x.yaml:4: planner.weights[1]: expected a number, got 'x'"),
+        ("planner: {name: fuzzy, weights: [1, x]}",
+         "x.yaml:4: planner.weights[1]: expected a number, got 'x'"),
+        ("planner: {weights: [1, 1]}", "x.yaml:4: planner.weights: unknown key for this planner, "
+         "known to fuzzy, improved-fuzzy; allowed: name, line_angle, turn_unit, distance, rules, "
+         "samples, guard, breakout, breakout_at, following, policy"),
     ],
 )  # fmt: skip
 def test_a_wrong_value_is_named_with_line_key_and_what_is_allowed(added, line):
@@ -109,7 +113,7 @@ def test_a_misspelt_key_gets_a_suggestion_and_the_allowed_keys():
         "allowed: max_speed, max_turn_rate, acceleration, turn_acceleration"
     )
     assert "did you mean 'obstacles'?" in only(GOOD + "obstacle: []")
-    assert "did you mean 'weights'?" in only(GOOD + "planner: {wieghts: [1, 1]}")
+    assert "did you mean 'weights'?" in only(GOOD + "planner: {name: fuzzy, wieghts: [1, 1]}")
     assert "did you mean" not in only(GOOD + "zzz: 1")
 
 
@@ -413,14 +417,14 @@ def test_a_planner_is_given_by_name_by_parameters_or_by_both():
     other = next(name for name in planner_names() if name != DEFAULT_PLANNER)
     assert parse_scenario(GOOD + f"planner: {other}").planner.name == other
     assert parse_scenario(GOOD + f"planner: {{name: {other}}}").planner.name == other
-    only_parameters = parse_scenario(GOOD + "planner: {weights: [1, 0.75]}").planner
+    only_parameters = parse_scenario(GOOD + "planner: {turn_unit: 0.75}").planner
     assert only_parameters.name == DEFAULT_PLANNER
-    assert only_parameters.model_dump()["weights"] == (1.0, 0.75)
+    assert only_parameters.model_dump()["turn_unit"] == 0.75
     assert parse_scenario(GOOD + "planner:").planner == parse_scenario(GOOD).planner
 
 
 def test_the_settings_of_the_chosen_planner_are_kept_whole_when_serialised():
-    scenario = parse_scenario(GOOD + "planner: {weights: [1, 0.75]}")
+    scenario = parse_scenario(GOOD + "planner: {name: fuzzy, weights: [1, 0.75]}")
     assert scenario.model_dump(mode="json")["planner"]["weights"] == [1.0, 0.75]
     assert Scenario.model_validate_json(scenario.model_dump_json()) == scenario
 

@@ -14,7 +14,8 @@ from fuzzyq_bullet.planning.settings import PlannerSettings
 Factory: TypeAlias = Callable[[Any, np.random.Generator], Planner]
 _S = TypeVar("_S", bound=PlannerSettings)
 
-DEFAULT_PLANNER = "improved-fuzzy"
+DEFAULT_PLANNER = "fuzzy-q-lambda"
+"""The paper's own."""
 
 
 @dataclass(frozen=True)

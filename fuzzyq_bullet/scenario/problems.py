@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from pydantic import BaseModel, ValidationError
 
-from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, settings_for
+from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
 from fuzzyq_bullet.scenario.models import Obstacle, Scenario
 
 if TYPE_CHECKING:
@@ -99,6 +99,14 @@ def _is_short_list(error: dict[str, Any]) -> bool:
     return error["type"] == "missing" and isinstance(error["loc"][-1], int)
 
 
+def _known_elsewhere(loc: tuple[str | int, ...]) -> str:
+    """Say which planners do have a parameter that the chosen one has not."""
+    if len(loc) != 2 or loc[0] != "planner":
+        return ""
+    knowing = [name for name in planner_names() if loc[1] in settings_for(name).model_fields]
+    return f" for this planner, known to {', '.join(knowing)}" if knowing else ""
+
+
 def _problem(error: dict[str, Any], data: Any) -> Problem:
     loc = _without_tag(tuple(error["loc"]))
     kind, value, context = error["type"], error["input"], error.get("ctx", {})
@@ -107,9 +115,8 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
     if kind == "missing":
         return Problem(loc, "is required", missing=True)
     if kind == "extra_forbidden":
-        return Problem(
-            loc, _refusal("unknown key", loc[-1], _keys_at(tuple(error["loc"][:-1]), data))
-        )
+        what = "unknown key" + _known_elsewhere(loc)
+        return Problem(loc, _refusal(what, loc[-1], _keys_at(tuple(error["loc"][:-1]), data)))
     if kind == "union_tag_not_found":
         shapes = ", ".join(_SHAPES)
         return Problem((*loc, "shape"), f"is required; allowed: {shapes}", missing=True)

@@ -12,6 +12,7 @@ from fuzzyq_bullet.planning.base import Decision, Observation
 from fuzzyq_bullet.scenario.models import Limits, Start
 from fuzzyq_bullet.training.rewards import Reward
 from fuzzyq_bullet.training.tasks import Tasks
+from fuzzyq_bullet.training.ways import Ways
 
 
 class Practice:
@@ -22,11 +23,14 @@ class Practice:
         hits_end: Whether an episode is over with the first contact. If not, the robot is put back
             to where it decided, at rest, and goes on: the contact has cost what it costs, and the
             clock runs on.
+        true_ways: Whether progress is measured along the true shortest way, which no planner
+            knows, instead of the straight line to the goal.
     """
 
-    def __init__(self, tasks: Tasks, *, hits_end: bool = True) -> None:
+    def __init__(self, tasks: Tasks, *, hits_end: bool = True, true_ways: bool = False) -> None:
         self._tasks = tasks
         self._hits_end = hits_end
+        self._true_ways = true_ways
         self._engine: Engine | None = None
 
     def begin(self, episode: int) -> None:
@@ -36,6 +40,8 @@ class Practice:
         self._scenario = scenario = self._tasks.scenario_of(episode)
         self._world = World(scenario.obstacles, scenario.arena, engine=self._engine)
         self._episode = Episode(self._world, scenario)
+        self._ways = Ways(scenario) if self._true_ways else None
+        self._left = self._to_goal(self._episode.now)
         self._decided = 0
         self._hit = False
 
@@ -45,16 +51,16 @@ class Practice:
 
     def advance(self, decision: Decision) -> Reward:
         """Carry out a decision and return what it earns."""
-        before, goal = self._episode.now, self._scenario.goal.position
+        before, left = self._episode.now, self._left
         self._episode.advance(decision)
         self._decided += 1
         now, outcome = self._episode.now, self._episode.outcome
         if outcome == "collision" and not self._hits_end:
             self._put_back(before)
-        here = self._episode.now
+        self._left = self._to_goal(self._episode.now)
         return Reward.of(
             seconds=now.time - before.time,
-            nearer=math.dist((before.x, before.y), goal) - math.dist((here.x, here.y), goal),
+            nearer=left - self._left,
             max_speed=self._scenario.robot.max_speed,
             outcome=outcome,
         )
@@ -68,6 +74,12 @@ class Practice:
     def outcome(self) -> str:
         """How the episode stands; ``collision`` once anything was hit, whatever came after."""
         return "collision" if self._hit else self._episode.outcome or "going on"
+
+    def _to_goal(self, tick: Tick) -> float:
+        """Return the way that is left (m)."""
+        if self._ways is not None:
+            return self._ways.from_here(tick.x, tick.y)
+        return math.dist((tick.x, tick.y), self._scenario.goal.position)
 
     def _put_back(self, tick: Tick) -> None:
         """Go on from an earlier tick, unless the episode's time or decisions are used up."""

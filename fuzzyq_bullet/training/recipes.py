@@ -29,6 +29,13 @@ from fuzzyq_bullet.training.tasks import Tasks
 from fuzzyq_bullet.training.weights import WeightsProblem
 from fuzzyq_bullet.version import __version__
 
+FORESIGHT = 0.97
+"""γ of ``fuzzy-q-lambda``. With four decisions a second the 0.95 of Table 1 would forget within
+five seconds, and a way round something takes longer."""
+MOST_STEPS = 240
+"""Decisions of it after which an episode is cut short (a minute): what is wrong with a way out that
+takes longer was decided before."""
+
 
 @dataclass(frozen=True)
 class Recipe:
@@ -70,8 +77,10 @@ RECIPES = {
             planner="fuzzy-q-lambda",
             expected=WEIGHTS,
             problem=WeightsProblem,
-            learner=lambda: LinearQLambda(len(WEIGHTS.states), len(WEIGHTS.actions)),
-            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
+            learner=lambda: LinearQLambda(
+                len(WEIGHTS.states), len(WEIGHTS.actions), discount=FORESIGHT
+            ),
+            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, max_steps=MOST_STEPS),
         ),
     )
 }

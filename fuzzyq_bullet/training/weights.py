@@ -13,14 +13,15 @@ from fuzzyq_bullet.training.tasks import Tasks
 class WeightsProblem:
     """The problem that ``fuzzy-q-lambda`` learns (``learning.Problem``).
 
-    States and actions are those of ``planning.weighing``, the reward is ``training.rewards``.
+    States and actions are those of ``planning.weighing``, the reward is ``training.rewards`` with
+    progress along the true shortest way (``training.ways``).
 
     Args:
         tasks: Where it is learned.
     """
 
     def __init__(self, tasks: Tasks) -> None:
-        self._practice = Practice(tasks)
+        self._practice = Practice(tasks, true_ways=True)
 
     def reset(self, episode: int, /) -> Features:
         """Begin an episode."""

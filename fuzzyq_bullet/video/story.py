@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
+from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.scenario.models import Cylinder
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
@@ -43,7 +44,7 @@ def reason(trajectory: Trajectory, index: int) -> str:
     ):
         return "Finds no way on: stops"
     if mode == "breakout":
-        return _breaks_out(decisions, index, _turn(trajectory, index))
+        return _breaks_out(trajectory, index)
     return _goes_on(trajectory, index)
 
 
@@ -117,13 +118,27 @@ def _goes_on(trajectory: Trajectory, index: int) -> str:
     return f"Goes round the obstacle by the {_side(lean)}"
 
 
-def _breaks_out(decisions: Decisions, index: int, turn: float) -> str:
+def _breaks_out(trajectory: Trajectory, index: int) -> str:
+    decisions = trajectory.decisions
     ahead = float(decisions.lengths[index, 1])
     lean = off_goal_line(decisions, index)
-    way = lean if math.isfinite(lean) else turn
+    way = lean if math.isfinite(lean) else _turn(trajectory, index)
     side = "straight ahead" if abs(way) < STRAIGHT else "to the " + _side(way)
-    near = not math.isfinite(ahead) or ahead < STEP_UNIT
-    return f"{'Blocked ahead' if near else 'Comes no nearer'}: breaks out {side}"
+    if not math.isfinite(ahead) or ahead < STEP_UNIT:
+        because = "Blocked ahead"
+    elif ahead < _breakout_at(trajectory):
+        because = f"Blocked {ahead:.1f} m ahead"
+    else:
+        because = "Comes no nearer"
+    return f"{because}: breaks out {side}"
+
+
+def _breakout_at(trajectory: Trajectory) -> float:
+    """Return the free way (m) with less than which the robot breaks out; where learned, at most."""
+    planner = trajectory.scenario.planner
+    if isinstance(planner, PolicySettings):
+        return _MOST_ROOM * STEP_UNIT
+    return float(getattr(planner, "breakout_at", 1.0)) * STEP_UNIT
 
 
 def _steers(trajectory: Trajectory, index: int) -> str:
@@ -155,7 +170,8 @@ def _steers(trajectory: Trajectory, index: int) -> str:
     if abs(lean) < STRAIGHT:
         return f"{because}, {ahead:.1f} m ahead: {_to_goal(turn, nearly=True)}"
     if _side(lean) != freer:
-        return f"{because}, yet the rules lead {_side(lean)}"
+        who = "the rules lead" if math.isfinite(float(decisions.turn[index])) else "it goes"
+        return f"{because}, yet {who} {_side(lean)}"
     return f"{because}: {_bends(turn, lean)}"
 
 

@@ -1,0 +1,201 @@
+"""The planner ``fuzzy-q-lambda``, and the problem that it learns."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fuzzyq_bullet.episode import run
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.fuzzy.paper import paper_controller
+from fuzzyq_bullet.learning import Policy
+from fuzzyq_bullet.oracle import feasible, shortest_path
+from fuzzyq_bullet.planning import (
+    DEFAULT_PLANNER,
+    FuzzyQLambdaSettings,
+    ImprovedFuzzySettings,
+    make_planner,
+)
+from fuzzyq_bullet.planning.policies import shipped
+from fuzzyq_bullet.planning.routine import Situation
+from fuzzyq_bullet.planning.weighing import ACTION_NAMES, ACTIONS, STATE_NAMES, features_of
+from fuzzyq_bullet.scenario import Scenario, Start, load_scenario, random_task, realise
+from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM, Tasks
+from fuzzyq_bullet.training.ways import Ways
+from fuzzyq_bullet.training.weights import WeightsProblem
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+HALF = len(STATE_NAMES) // 2
+
+
+def situation(distance: float, difference: float) -> Situation:
+    inferred = paper_controller().infer(distance, difference)
+    return Situation(0.0, 1.0, (0.8, 0.0, -0.8), np.ones(3), distance, difference, inferred)
+
+
+def always(action: int) -> Policy:
+    """A policy that thinks most of one action wherever it is."""
+    row = [float(number == action) for number in range(len(ACTIONS))]
+    return Policy(
+        planner="fuzzy-q-lambda",
+        learner="linear-q-lambda",
+        command="by hand",
+        seed=0,
+        version="0",
+        drive="wheels",
+        scenario="none",
+        episodes=1,
+        parameters={},
+        states=STATE_NAMES,
+        actions=ACTION_NAMES,
+        table=[row] * len(STATE_NAMES),
+    )
+
+
+@given(st.floats(0.0, 5.0), st.floats(-5.0, 5.0))
+def test_the_rules_make_the_state_and_sum_to_one_in_the_half_of_the_part_at_work(
+    distance: float, difference: float
+) -> None:
+    seen = situation(distance, difference)
+    for mode, first in (("routine", 0), ("breakout", HALF), ("following", HALF)):
+        state = features_of(seen, mode)  # type: ignore[arg-type]
+        assert state.values.sum() == pytest.approx(1.0)
+        assert ((state.indices >= first) & (state.indices < first + HALF)).all()
+
+
+@given(st.floats(0.0, 5.0), st.floats(0.0, 0.5))
+def test_what_stands_on_the_left_is_learned_from_what_stood_on_the_right(
+    distance: float, difference: float
+) -> None:
+    # Near Df = 0, where the two ends of Table 2, which are no mirror images, have no say.
+    dense = np.zeros((2, len(STATE_NAMES)))
+    for row, sign in zip(dense, (1, -1), strict=True):
+        state = features_of(situation(distance, sign * difference), "routine")
+        row[state.indices] = state.values
+    assert dense[0] == pytest.approx(dense[1], abs=0.03)
+
+
+def test_the_strongest_feature_is_called_by_what_there_is() -> None:
+    def strongest(distance: float, difference: float, mode: str = "routine") -> str:
+        state = features_of(situation(distance, difference), mode)  # type: ignore[arg-type]
+        return STATE_NAMES[int(state.indices[state.values.argmax()])]
+
+    assert strongest(0.1, 0.0) == "routine: VN even"
+    assert strongest(2.5, -2.2) == "routine: M small"
+    assert strongest(5.0, 5.0, "following") == "way out: VF big"
+
+
+@pytest.mark.parametrize("action", [0, len(ACTIONS) - 1])
+def test_a_policy_that_knows_one_answer_drives_like_fixed_weights(
+    action: int, tmp_path: Path
+) -> None:
+    path = tmp_path / "one.json"
+    always(action).save(path)
+    chosen = ACTIONS[action]
+    task = realise(random_task(5, count=30))
+    fixed = ImprovedFuzzySettings(
+        weights=(chosen.step, chosen.turn), breakout_at=chosen.breakout_at
+    )
+    digests = {
+        run(task.model_copy(update={"planner": settings})).digest()
+        for settings in (fixed, FuzzyQLambdaSettings(policy=str(path)))
+    }
+    assert len(digests) == 1
+
+
+def test_it_chooses_by_situation() -> None:
+    weights = run(realise(load_scenario("mixed"))).decisions.weights
+    assert DEFAULT_PLANNER == load_scenario("mixed").planner.name == "fuzzy-q-lambda"
+    assert len({tuple(pair) for pair in weights.tolist()}) > 1
+
+
+def test_a_policy_file_that_changes_is_read_again(tmp_path: Path) -> None:
+    path = tmp_path / "p.json"
+    settings, rng = FuzzyQLambdaSettings(policy=str(path)), np.random.default_rng(0)
+    always(0).save(path)
+    make_planner(settings, rng)
+    path.write_text("{}")
+    with pytest.raises(UserError, match=r"p\.json"):
+        make_planner(settings, rng)
+    path.unlink()
+    with pytest.raises(UserError, match="make one with fuzzyq train fuzzy-q-lambda"):
+        make_planner(settings, rng)
+
+
+def test_a_policy_for_other_states_is_refused(tmp_path: Path) -> None:
+    data = json.loads(shipped("fuzzy-q-lambda").read_text())
+    data["states"][3] = "somewhere else"
+    path = tmp_path / "p.json"
+    path.write_text(json.dumps(data))
+    with pytest.raises(UserError, match="states: number 3 is 'somewhere else'"):
+        make_planner(FuzzyQLambdaSettings(policy=str(path)), np.random.default_rng(0))
+
+
+def test_what_an_episode_earns_is_its_delay() -> None:
+    tasks = Tasks(drive="wheels", counts=(10,))
+    problem = WeightsProblem(tasks)
+    problem.reset(1)
+    total, steps, over = 0.0, 0, False
+    while not over:
+        _, reward, over = problem.step(len(ACTIONS) - 1)
+        total, steps = total + reward, steps + 1
+    assert problem.outcome == "goal"
+    scenario = tasks.scenario_of(1)
+    way = Ways(scenario).from_here(*scenario.start.position)
+    # All but the last few centimetres within the goal, and the last decision that it cut short.
+    delay = way / scenario.robot.max_speed - steps * 0.25
+    assert total == pytest.approx(delay, abs=0.25 + scenario.goal.radius / 0.6)
+
+
+def test_tasks_repeat_have_a_way_and_are_none_that_a_sweep_has() -> None:
+    tasks = Tasks(seed=3)
+    first = [tasks.scenario_of(episode) for episode in range(1, 6)]
+    assert first == [tasks.scenario_of(episode) for episode in range(1, 6)]
+    assert len({one.seed for one in first}) == len(first)
+    assert all(feasible(one, ROOM) and one.seed >= FIRST_SEED for one in first)
+    assert [len(one.obstacles) for one in first] == [50, 75, 100, 25, 50]
+    assert tasks.digest() != Tasks(seed=4).digest()
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_ways_are_those_of_the_oracle(seed: int) -> None:
+    scenario = realise(random_task(seed, count=60))
+    ways, rng = Ways(scenario), np.random.default_rng([seed, 77])
+    checked = 0
+    for x, y in rng.uniform(0.5, 9.5, (60, 2)):
+        there = scenario.model_copy(update={"start": Start(position=(float(x), float(y)))})
+        # A grid misses the narrowest gaps, and no more than those.
+        least, most = shortest_path(there, 0.21), shortest_path(there, 0.26)
+        if least is None or most is None or most.length == 0.0:
+            continue
+        checked += 1
+        length = ways.from_here(float(x), float(y)) - scenario.goal.radius  # not to its centre
+        assert least.length - 0.05 <= length <= 1.06 * most.length + 0.1
+    assert checked > 20
+
+
+def test_ways_are_finite_where_there_is_none() -> None:
+    obstacles = [
+        {"shape": "box", "position": [5.0, 5.0], "size": [0.2, 9.99]},
+        {"shape": "cylinder", "position": [8.0, 2.0], "radius": 0.5},
+    ]
+    scenario = Scenario.model_validate(
+        {
+            "name": "walled",
+            "start": {"position": [1, 5]},
+            "goal": {"position": [9, 5]},
+            "obstacles": obstacles,
+        }
+    )
+    ways = Ways(scenario)
+    places = [(1.0, 5.0), (5.0, 5.0), (0.0, 0.0), (9.0, 5.0), (8.0, 2.0)]
+    assert all(math.isfinite(ways.from_here(*place)) for place in places)
+    assert ways.from_here(9.0, 5.0) < 0.1
