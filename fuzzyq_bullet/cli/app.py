@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzyq_bullet.cli import bench, explain, figure, replay, run, scenarios, train
+from fuzzyq_bullet.cli import bench, check, explain, figure, replay, run, scenarios, train
 from fuzzyq_bullet.cli.words import help_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
@@ -33,6 +33,7 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 
 _add("run", run.run)
 _add("replay", replay.replay)
+_add("check", check.check)
 _add("validate", scenarios.validate)
 _add("schema", scenarios.schema)
 _add("list", scenarios.list_scenarios)

@@ -1,0 +1,240 @@
+"""Worker processes that may die: what happens in one of them is told, and the others go on."""
+
+from __future__ import annotations
+
+import json
+import os
+import selectors
+import signal
+import subprocess
+import sys
+import time
+from collections import deque
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from types import TracebackType
+from typing import Any, TypeAlias, TypeVar
+
+from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
+from fuzzyq_bullet.checks.worker import COMMAND
+from fuzzyq_bullet.errors import UserError
+
+TIMEOUT = 120.0
+"""Wall-clock time (s) that one scenario may take."""
+FILM_TIMEOUT = 900.0
+"""Wall-clock time (s) that one film may take."""
+START_TIMEOUT = 120.0
+"""Wall-clock time (s) that a worker may take to load the libraries."""
+MEMORY_MB = 2048
+"""Memory that one worker may use (MB)."""
+
+AnyJob: TypeAlias = "Job | FilmJob"
+_J = TypeVar("_J", Job, FilmJob)
+Answer: TypeAlias = dict[str, Any]
+"""What a worker said: ``verdict`` or ``filmed``; or ``died``, a line about its end."""
+
+
+class Crew:
+    """Workers, started when there is something to do and ended when the block ends.
+
+    Args:
+        workers: Most at a time.
+        plugins: Modules that each imports first.
+        timeout: Wall-clock time (s) after which a scenario is cut.
+        memory_mb: Memory (MB) that each may use.
+    """
+
+    def __init__(
+        self,
+        workers: int = 1,
+        *,
+        plugins: Sequence[str] = (),
+        timeout: float = TIMEOUT,
+        memory_mb: int = MEMORY_MB,
+    ) -> None:
+        self._most = workers
+        self._plugins = list(plugins)
+        self._timeout = timeout
+        self._memory_mb = memory_mb
+        self._workers: list[_Worker] = []
+
+    def __enter__(self) -> Crew:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End all workers, whatever they are at."""
+        while self._workers:
+            self._workers.pop().end()
+
+    def check(self, jobs: Sequence[Job]) -> Iterator[tuple[int, Verdict]]:
+        """Do jobs; yield the index of each and its verdict as it is finished, in any order.
+
+        Raises:
+            UserError: If no worker can be started, for a plugin that does not load.
+        """
+        orders = [{"job": job.model_dump(), "timeout": self._timeout} for job in jobs]
+        for i, answer, seconds in self._done(orders):
+            if "verdict" in answer:
+                verdict = Verdict.model_validate(answer["verdict"])
+            else:
+                verdict = _broken(jobs[i], answer["died"], self._plugins)
+            verdict.seconds = round(seconds, 3)
+            yield i, verdict
+
+    def film(self, jobs: Sequence[FilmJob]) -> Iterator[tuple[int, str]]:
+        """Make films; yield the index of each, and why it could not be made ("" if it was)."""
+        orders = [{"film": job.model_dump(), "timeout": FILM_TIMEOUT} for job in jobs]
+        for i, answer, _ in self._done(orders):
+            yield i, "" if answer.get("filmed") else answer.get("why") or answer["died"]
+
+    def _done(self, orders: Sequence[dict[str, Any]]) -> Iterator[tuple[int, Answer, float]]:
+        """Yield the index of each order, the answer to it, and how long it took (s)."""
+        waiting = deque(enumerate(orders))
+        try:
+            while waiting or any(worker.order is not None for worker in self._workers):
+                self._hand_out(waiting)
+                yield from self._collect()
+        finally:  # whoever stops listening leaves no worker with half an answer
+            for busy in [one for one in self._workers if one.order is not None]:
+                self._dismiss(busy)
+
+    def _hand_out(self, waiting: deque[tuple[int, dict[str, Any]]]) -> None:
+        starting = sum(not worker.ready for worker in self._workers)
+        idle = [worker for worker in self._workers if worker.ready and worker.order is None]
+        for worker in idle[: len(waiting)]:
+            worker.give(*waiting.popleft())
+        room = self._most - len(self._workers)
+        for _ in range(min(room, len(waiting) - starting)):
+            self._workers.append(_Worker(self._plugins, self._memory_mb))
+
+    def _collect(self) -> Iterator[tuple[int, Answer, float]]:
+        """Wait for whatever happens first, and yield what it finishes."""
+        with selectors.DefaultSelector() as selector:
+            for worker in self._workers:
+                selector.register(worker.answers, selectors.EVENT_READ, worker)
+            soonest = min((worker.deadline for worker in self._workers), default=0.0)
+            events = selector.select(max(0.0, min(soonest - time.monotonic(), 1.0)))
+        for key, _ in events:
+            worker: _Worker = key.data
+            answer = worker.listen()
+            if answer is None:
+                continue
+            if "unable" in answer:
+                raise UserError(*answer["unable"])
+            if "ready" in answer:
+                worker.be_ready()
+                continue
+            yield from self._settle(worker, answer)
+        now = time.monotonic()
+        for late in [one for one in self._workers if now > one.deadline]:
+            limit = late.deadline - late.since
+            why = f"cut after {limit:g} s of wall-clock time"
+            if late.ready:
+                why += ": it hangs, or needs a longer --timeout"
+            yield from self._settle(late, {"died": why})
+
+    def _settle(self, worker: _Worker, answer: Answer) -> Iterator[tuple[int, Answer, float]]:
+        order, seconds = worker.order, time.monotonic() - worker.since
+        started = worker.ready
+        worker.order, worker.deadline = None, float("inf")
+        if "died" in answer or answer.get("retire"):
+            self._dismiss(worker)
+        if order is not None:
+            yield order, answer, seconds
+        elif not started:
+            raise UserError(f"no worker process can be started: {answer['died']}")
+
+    def _dismiss(self, worker: _Worker) -> None:
+        worker.end()
+        self._workers.remove(worker)
+
+
+class _Worker:
+    """One process and the pipes to it."""
+
+    def __init__(self, plugins: Sequence[str], memory_mb: int) -> None:
+        settings = {"plugins": list(plugins), "memory_mb": memory_mb, "parent": os.getpid()}
+        path = [os.path.abspath(entry) for entry in sys.path]  # noqa: PTH100  ("" is the folder)
+        one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+        self._process = subprocess.Popen(
+            [sys.executable, "-I", "-c", COMMAND, json.dumps(path), json.dumps(settings)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, **one_thread},
+            # A terminal's Ctrl-C is for the process that started it; and a group of its own ends
+            # as a whole.
+            start_new_session=True,
+        )
+        assert self._process.stdout is not None
+        self.answers = self._process.stdout.fileno()
+        self._said = b""
+        self.ready = False
+        self.order: int | None = None
+        self.since = time.monotonic()
+        self.deadline = self.since + START_TIMEOUT
+
+    def be_ready(self) -> None:
+        self.ready, self.deadline = True, float("inf")
+
+    def give(self, index: int, order: dict[str, Any]) -> None:
+        """Hand out an order; that nobody takes it is seen when listening."""
+        self.order, self.since = index, time.monotonic()
+        self.deadline = self.since + order["timeout"]
+        assert self._process.stdin is not None
+        with suppress(BrokenPipeError):
+            self._process.stdin.write(json.dumps(order).encode() + b"\n")
+            self._process.stdin.flush()
+
+    def listen(self) -> Answer | None:
+        """Return what it says; None while that is not finished."""
+        heard = os.read(self.answers, 1 << 20)
+        if not heard:
+            return {"died": _end_in_words(self._process.wait())}
+        self._said += heard
+        if not self._said.endswith(b"\n"):
+            return None
+        line, self._said = self._said, b""
+        answer: Answer = json.loads(line)
+        return answer
+
+    def end(self) -> None:
+        """End the process and all that it started."""
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
+        for pipe in (self._process.stdin, self._process.stdout):
+            assert pipe is not None
+            with suppress(BrokenPipeError):
+                pipe.close()
+
+
+def _end_in_words(code: int) -> str:
+    """Say how a process ended."""
+    if code >= 0:
+        return f"its process ended by itself, with exit code {code}"
+    known = {one.value: one.name for one in signal.Signals}
+    name = known.get(-code, f"signal {-code}")
+    why = (signal.strsignal(-code) or "").lower()
+    if -code == signal.SIGKILL:
+        why = "killed from outside: the machine is out of memory, or somebody ended it"
+    return f"its process crashed: {name} ({why})"
+
+
+def _broken(job: Job, why: str, plugins: Sequence[str]) -> Verdict:
+    from fuzzyq_bullet.checks.replay import replay_command
+
+    return Verdict(
+        name=job.name,
+        file=job.file,
+        status="broken",
+        why=[why],
+        replay=replay_command(job, plugins),
+    )

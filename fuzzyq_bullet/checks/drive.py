@@ -1,0 +1,95 @@
+"""One job done in this process: the scenario driven, and held to what it expects."""
+
+from __future__ import annotations
+
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fuzzyq_bullet.checks.explain import Source, in_words, nearest, touched, whereabouts
+from fuzzyq_bullet.checks.replay import replay_command
+from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.metrics import Result, result_of
+from fuzzyq_bullet.scenario import Scenario, load_scenario, realise, with_options
+from fuzzyq_bullet.verdict import missed
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
+
+
+def drive(job: Job, *, plugins: list[str] | None = None) -> Verdict:
+    """Run a scenario and judge it; whatever goes wrong in it is part of the verdict."""
+    replay = replay_command(job, plugins or [])
+    verdict = Verdict(name=job.name, file=job.file, status="passed", replay=replay)
+    try:
+        scenario = load_scenario(job.file, policies=job.planner is None)
+        scenario = with_options(scenario, planner=job.planner, seed=job.seed, drive=job.drive)
+        scenario = realise(scenario)
+        trajectory = _run(scenario)
+    except UserError as error:
+        why = [_named(problem, job.file) for problem in error.problems]
+        return verdict.model_copy(update={"status": "invalid", "why": why})
+    except MemoryError:
+        why = ["ran out of the memory that it may use (--memory)"]
+        return verdict.model_copy(update={"status": "broken", "why": why})
+    except Exception as error:  # of a planner of the user's own, or ours: the others go on
+        return verdict.model_copy(update={"status": "broken", "why": [_in_a_line(error)]})
+    judged = judge(trajectory, result_of(trajectory), verdict)
+    if job.record and (job.keep == "all" or (job.keep == "failed" and judged.why)):
+        trajectory.save(Path(job.record))
+        judged.record = job.record
+    return judged
+
+
+def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
+    """Return the verdict with what the run came to, and why it was not what was expected."""
+    expect = trajectory.scenario.expect
+    misses = missed(expect, result)
+    update = {"expect": expect, "result": result}
+    if not misses:
+        return verdict.model_copy(update=update)
+    source = Source(verdict.file)
+    touch = touched(trajectory, source)
+    least, wanted = result.min_clearance_m, expect.min_clearance
+    if touch is None and least is not None and wanted is not None and least < wanted:
+        touch = nearest(trajectory, source)
+    why = list(misses)
+    if touch is not None:
+        why.append(in_words(touch, verdict.file))
+    elif result.outcome in ("timeout", "stuck"):
+        why.append(whereabouts(trajectory, result))
+    line = touch.line if touch is not None else source.line_of("expect", "goal", "name")
+    told = {"status": "failed", "why": why, "touch": touch, "line": line}
+    return verdict.model_copy(update={**update, **told})
+
+
+def make_film(job: FilmJob) -> None:
+    """Make a film from a kept trajectory.
+
+    Raises:
+        UserError: If the record cannot be read, or the film not written.
+    """
+    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video import record
+
+    record(Trajectory.load(Path(job.record)), Path(job.video))
+
+
+def _run(scenario: Scenario) -> Trajectory:
+    # Asked of the module at each run: a plugin may have put another in its place.
+    from fuzzyq_bullet import episode
+
+    return episode.run(scenario)
+
+
+def _named(problem: str, file: str) -> str:
+    return problem if problem.startswith(file) else f"{file}: {problem}"
+
+
+def _in_a_line(error: BaseException) -> str:
+    """Say what an exception is and where it comes from, as a traceback's last lines would."""
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    message = " ".join(str(error).split())[:300]
+    what = type(error).__name__ + (f": {message}" if message else "")
+    return f"stopped by an error: {what} ({last.filename}:{last.lineno}, in {last.name})"

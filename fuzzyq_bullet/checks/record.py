@@ -1,0 +1,170 @@
+"""How scenarios behaved when it was recorded, beside them; and what is otherwise by now."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from fuzzyq_bullet.checks.verdict import Verdict
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import write_text
+from fuzzyq_bullet.metrics import Result
+
+FILE = "check-record.json"
+"""Its name, one in each folder that has scenarios."""
+RELATIVE = 0.05
+"""Share by which time and path may differ before it is told: another platform rounds otherwise."""
+CLEARANCE = 0.01
+"""The same for the least clearance (m)."""
+MAX_BYTES = 20_000_000
+
+
+class Entry(BaseModel):
+    """One run, as it was.
+
+    Attributes:
+        file: The scenario file's name.
+        platform: What the digest holds for, together with ``result.version``.
+        result: Its figures.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    file: str
+    platform: str
+    result: Result
+
+
+class Record(BaseModel):
+    """All runs recorded in a folder, by scenario, planner, drive and seed."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    format: Literal[1] = 1
+    runs: dict[str, Entry] = {}
+
+
+class Records:
+    """The records of all folders, read when first needed."""
+
+    def __init__(self) -> None:
+        self._records: dict[Path, Record] = {}
+
+    def changes(self, verdict: Verdict) -> list[str]:
+        """Return what is otherwise than recorded; nothing where nothing was.
+
+        Raises:
+            UserError: If the record cannot be read.
+        """
+        if verdict.result is None:
+            return []
+        entry = self._of(Path(verdict.file).parent).runs.get(_key(verdict.result))
+        return [] if entry is None else compare(entry, verdict.result)
+
+    def write(self, verdicts: Sequence[Verdict]) -> list[Path]:
+        """Record the runs that passed, beside their scenarios; return what was written.
+
+        Runs that were recorded before and are not among these stay, unless their file is gone.
+
+        Raises:
+            UserError: If a record cannot be read or written.
+        """
+        folders: dict[Path, Record] = {}
+        for verdict in verdicts:
+            if verdict.status != "passed" or verdict.result is None:
+                continue
+            file = Path(verdict.file)
+            record = folders.setdefault(file.parent, self._of(file.parent))
+            record.runs[_key(verdict.result)] = Entry(
+                file=file.name, platform=this_platform(), result=verdict.result
+            )
+        for folder, record in folders.items():
+            kept = {k: e for k, e in sorted(record.runs.items()) if (folder / e.file).exists()}
+            text = Record(runs=kept).model_dump_json(indent=1)
+            write_text(folder / FILE, text + "\n")
+        return [folder / FILE for folder in folders]
+
+    def _of(self, folder: Path) -> Record:
+        if folder not in self._records:
+            self._records[folder] = read(folder / FILE)
+        return self._records[folder]
+
+
+def read(path: Path) -> Record:
+    """Read a record; an empty one where there is none.
+
+    Raises:
+        UserError: If it cannot be read, or is none of this format.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        return Record()
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {error.strerror or error}") from error
+    try:
+        if len(content) > MAX_BYTES:
+            raise ValueError("too large")
+        return Record.model_validate_json(content)
+    except (ValidationError, ValueError) as error:
+        raise UserError(f"{path}: not a record of fuzzyq check --record; delete it") from error
+
+
+def compare(entry: Entry, now: Result) -> list[str]:
+    """Return what is otherwise than in an entry, a line each."""
+    then, lines = entry.result, []
+    if now.outcome != then.outcome:
+        lines.append(f"outcome {now.outcome}, recorded {then.outcome}")
+    for what, unit, a, b in (
+        ("time", "s", now.time_s, then.time_s),
+        ("path", "m", now.path_length_m, then.path_length_m),
+    ):
+        change = a / b - 1.0 if b > 0 else 0.0
+        if abs(change) > RELATIVE:
+            lines.append(f"{what} {_signed(100 * change, 0)} %: {a:.2f} {unit}, recorded {b:.2f}")
+    least, before = now.min_clearance_m, then.min_clearance_m
+    if (least is None) != (before is None):
+        near = ["nothing near" if one is None else f"{one:.3f} m" for one in (least, before)]
+        lines.append(f"clearance {near[0]}, recorded {near[1]}")
+    elif least is not None and before is not None and abs(least - before) > CLEARANCE:
+        change = 100 * (least - before)
+        lines.append(f"clearance {_signed(change, 1)} cm: {least:.3f} m, recorded {before:.3f}")
+    same_ground = (entry.platform, then.version) == (this_platform(), now.version)
+    if not lines and same_ground and now.digest != then.digest:
+        lines.append(
+            f"another trajectory than recorded, with much the same figures "
+            f"(digest {now.digest[:8]}, recorded {then.digest[:8]})"
+        )
+    return lines
+
+
+def this_platform() -> str:
+    """Return what a digest depends on besides the version: every part that rounds in its own way.
+
+    With the processor: libraries choose their arithmetic by it.
+    """
+    packages = (f"{package} {version(package)}" for package in ("numpy", "pybullet"))
+    return ", ".join([platform.system(), platform.machine(), _processor(), *packages])
+
+
+def _processor() -> str:
+    try:
+        with Path("/proc/cpuinfo").open(encoding="utf-8", errors="replace") as file:
+            names = (line.partition(":")[2] for line in file if line.startswith("model name"))
+            return next(names, "").strip() or "unknown processor"
+    except OSError:
+        return "unknown processor"
+
+
+def _key(result: Result) -> str:
+    return f"{result.scenario}/{result.planner}/{result.drive}/{result.seed}"
+
+
+def _signed(value: float, digits: int) -> str:
+    return f"{value:+.{digits}f}".replace("-", "−")

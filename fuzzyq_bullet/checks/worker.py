@@ -1,0 +1,100 @@
+"""A worker process: jobs in on its standard input, verdicts out, one JSON line each.
+
+Started by ``checks.crew`` with ``COMMAND``. It may crash, hang or run out of memory: whoever
+started it sees that, and starts another.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import signal
+import sys
+import threading
+import time
+from typing import Any
+
+COMMAND = (
+    "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
+    "from fuzzyq_bullet.checks.worker import main; main(json.loads(sys.argv[2]))"
+)
+"""For ``python -I -c``, which lets no folder that happens to be current shadow a module."""
+
+GRACE = 30
+"""Time (s) behind its limit at which a worker ends itself, when nobody did."""
+RETIRE_AT = 0.5
+"""Share of the memory it may use at which a worker makes way for a fresh one.
+
+So what one scenario left behind is never blamed on the next.
+"""
+
+
+def main(settings: dict[str, Any]) -> None:
+    """Do jobs until the standard input ends.
+
+    Args:
+        settings: ``plugins``: modules to import first; ``memory_mb``: most memory (MB, 2²⁰ bytes);
+            ``parent``: the process without which this one has no purpose.
+    """
+    # What planners and libraries print must not get between the answers.
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    _end_with(settings["parent"])
+    limit = int(settings["memory_mb"]) * 2**20
+    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+    def answer(**told: Any) -> None:
+        answers.write(json.dumps(told) + "\n")
+        answers.flush()
+
+    from fuzzyq_bullet.checks.plugins import load_plugins
+    from fuzzyq_bullet.errors import UserError
+
+    try:
+        load_plugins(settings["plugins"])
+        from fuzzyq_bullet.checks import drive
+    except UserError as error:
+        answer(unable=list(error.problems))
+        return
+    from fuzzyq_bullet import episode  # noqa: F401  (loads the physics before any clock runs)
+    from fuzzyq_bullet.checks.verdict import FilmJob, Job
+
+    answer(ready=True)
+    for line in sys.stdin:
+        order = json.loads(line)
+        # By the kernel, which no hang in a library can keep from it.
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.alarm(int(order["timeout"]) + GRACE)
+        if "film" in order:
+            try:
+                drive.make_film(FilmJob.model_validate(order["film"]))
+                answer(filmed=True)
+            except (UserError, MemoryError) as error:
+                answer(filmed=False, why=str(error) or "out of memory")
+        else:
+            job = Job.model_validate(order["job"])
+            verdict = drive.drive(job, plugins=settings["plugins"])
+            answer(verdict=verdict.model_dump(mode="json"), retire=_resident() > RETIRE_AT * limit)
+        signal.alarm(0)
+
+
+def _resident() -> int:
+    """Return the memory that this process holds now (bytes)."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123
+            return int(file.read().split()[1]) * resource.getpagesize()
+    except OSError:
+        return 0
+
+
+def _end_with(parent: int) -> None:
+    """End this process when its parent ends, even by ``kill -9``."""
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, name="watch-parent", daemon=True).start()

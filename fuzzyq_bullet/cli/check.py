@@ -1,0 +1,187 @@
+"""``fuzzyq check``: scenarios as tests, for the CI of robot teams."""
+
+from __future__ import annotations
+
+import os
+import time
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.errors import UserError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fuzzyq_bullet.checks.crew import Crew
+    from fuzzyq_bullet.checks.verdict import Verdict
+
+
+class Video(str, Enum):
+    """Of which runs a film is kept."""
+
+    failed = "failed"
+    all = "all"
+    none = "none"
+
+
+def check(
+    paths: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="PATH...",
+            help="Scenario files, folders, globs, or names of bundled scenarios.",
+        ),
+    ],
+    *,
+    planner: Annotated[
+        str | None,
+        typer.Option(help="Planner to use instead, with the same settings as far as it has them."),
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="(First) seed to use instead.")] = None,
+    drive: Annotated[str | None, typer.Option(help="wheels or kinematic, instead.")] = None,
+    repeat: Annotated[
+        int, typer.Option(min=1, max=10_000, help="Runs of each, with seeds that count up.")
+    ] = 1,
+    plugin: Annotated[
+        list[str] | None,
+        typer.Option(metavar="MODULE", help="Python module or file to import first (repeatable)."),
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, max=1024, help="Worker processes; one a core by default.")
+    ] = None,
+    timeout: Annotated[
+        float, typer.Option(min=0.1, max=86400.0, help="Wall-clock seconds for one run.")
+    ] = 120.0,
+    memory: Annotated[
+        int, typer.Option(min=256, max=1_000_000, help="Memory (MB) for one run.")
+    ] = 2048,
+    junit: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a report as JUnit XML.")
+    ] = None,
+    github: Annotated[
+        bool, typer.Option("--github", help="Print annotations for GitHub Actions.")
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")] = False,
+    video: Annotated[
+        Video, typer.Option(help="Of which runs to keep a film and its record in --out.")
+    ] = Video.none,
+    out: Annotated[Path, typer.Option(help="Folder for films.", **FOLDER)] = Path("out/check"),
+    record: Annotated[
+        bool, typer.Option("--record", help="Note how they behave now, beside the scenarios.")
+    ] = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Fail what behaves otherwise than recorded.")
+    ] = False,
+) -> None:
+    """Run scenarios and hold each to what it expects: by default the goal, and no collision.
+
+    Each runs in a worker process: one that crashes, hangs or eats memory fails alone. Exit code 1
+    when one fails, 2 when one cannot be run at all.
+
+    Raises:
+        UserError: If an option is wrong, or there is no scenario.
+    """
+    from fuzzyq_bullet.checks.collect import find
+    from fuzzyq_bullet.checks.crew import Crew
+    from fuzzyq_bullet.checks.github import problem_command
+    from fuzzyq_bullet.checks.junit import junit_xml
+    from fuzzyq_bullet.checks.plan import Plan, planned
+    from fuzzyq_bullet.checks.plugins import load_plugins
+    from fuzzyq_bullet.checks.record import Records
+    from fuzzyq_bullet.checks.report import as_json
+    from fuzzyq_bullet.checks.words import summary
+    from fuzzyq_bullet.cli.console import say
+    from fuzzyq_bullet.cli.process import say_error
+    from fuzzyq_bullet.files import writable_folder, write_text
+
+    if record and strict:
+        raise UserError("--record and --strict exclude each other: one notes, the other compares")
+    load_plugins(plugin or [])
+    found = find(paths)
+    folder = None if video is Video.none else writable_folder(out)
+    plan = planned(
+        found.files,
+        Plan(planner, seed, drive, repeat, keep=video.value, folder=folder),
+    )
+    if not plan.jobs:
+        raise UserError(*found.problems, *plan.problems)
+    problems = [*found.problems, *plan.problems]
+    if junit is not None:
+        write_text(junit, "")  # a report that cannot be written is told before the work
+    show = _printer(json=json, github=github, width=max(len(job.name) for job in plan.jobs))
+    begun = time.monotonic()
+    records = Records()
+    with Crew(
+        jobs or len(os.sched_getaffinity(0)),
+        plugins=plugin or [],
+        timeout=timeout,
+        memory_mb=memory,
+    ) as crew:
+        verdicts: list[Verdict] = []
+        waiting: dict[int, Verdict] = {}
+        for i, verdict in crew.check(plan.jobs):
+            waiting[i] = verdict
+            # In the order asked for, whatever finishes first.
+            while len(verdicts) in waiting:
+                verdict = waiting.pop(len(verdicts))
+                if not record:
+                    verdict.changes = records.changes(verdict)
+                    if strict and verdict.changes and verdict.status == "passed":
+                        verdict.status = "failed"
+                        verdict.why = ["behaves otherwise than recorded (--strict)"]
+                verdicts.append(verdict)
+                show(verdict)
+        _make_films(crew, verdicts, say)
+    if record:
+        for path in records.write(verdicts):
+            say(f"  {path}")
+    for problem in problems:
+        say_error(problem)
+        if github:
+            typer.echo(problem_command(problem), err=json)
+    seconds = time.monotonic() - begun
+    say(summary(verdicts, len(problems), seconds), style="bold")
+    if junit is not None:
+        write_text(junit, junit_xml(verdicts, problems, seconds))
+    if json:
+        typer.echo(as_json(verdicts, problems, seconds))
+    if problems or any(verdict.status == "invalid" for verdict in verdicts):
+        raise typer.Exit(2)
+    if any(verdict.status != "passed" for verdict in verdicts):
+        raise typer.Exit(1)
+
+
+def _printer(*, json: bool, github: bool, width: int) -> Callable[[Verdict], None]:
+    """Return what prints a verdict: on stdout, or on stderr where stdout is for JSON alone."""
+    from fuzzyq_bullet.checks.github import verdict_commands
+    from fuzzyq_bullet.checks.words import lines_of
+
+    def show(verdict: Verdict) -> None:
+        lines = lines_of(verdict, width)
+        for line in [*lines, *(verdict_commands(verdict) if github else [])]:
+            typer.echo(line, err=json)
+
+    return show
+
+
+def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None]) -> None:
+    """Make the films of all runs whose record was kept; a film that fails changes no verdict."""
+    from fuzzyq_bullet.checks.verdict import FilmJob
+
+    kept = [verdict for verdict in verdicts if verdict.record]
+    films = [
+        FilmJob(
+            record=str(verdict.record), video=str(Path(str(verdict.record)).with_suffix(".mp4"))
+        )
+        for verdict in kept
+    ]
+    for i, why in crew.film(films):
+        if why:
+            say(f"{films[i].video}: no film: {why}")
+        else:
+            kept[i].video = films[i].video
+            say(f"  {films[i].video}")
