@@ -118,9 +118,9 @@ class Crew:
     def _collect(self) -> Iterator[tuple[int, Answer, float]]:
         """Wait for whatever happens first, and yield what it finishes."""
         with selectors.DefaultSelector() as selector:
-            for worker in self._workers:
-                selector.register(worker.answers, selectors.EVENT_READ, worker)
-            soonest = min((worker.deadline for worker in self._workers), default=0.0)
+            for one in self._workers:
+                selector.register(one.answers, selectors.EVENT_READ, one)
+            soonest = min((one.deadline for one in self._workers), default=0.0)
             events = selector.select(max(0.0, min(soonest - time.monotonic(), 1.0)))
         for key, _ in events:
             worker: _Worker = key.data

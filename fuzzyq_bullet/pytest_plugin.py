@@ -1,0 +1,159 @@
+"""A plugin for pytest: scenario files as tests, and ``run_scenario`` for tests written by hand.
+
+Loaded wherever the package is installed, so it imports nothing that takes time: neither the
+package's own modules nor the physics, until a scenario is run.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.checks.by_hand import ScenarioRun
+    from fuzzyq_bullet.checks.crew import Crew
+
+ENDINGS = (".scenario.yaml", ".scenario.yml")
+IN_FOLDERS = (".yaml", ".yml")
+
+_folders = pytest.StashKey[list[Path]]()
+_crew = pytest.StashKey["Crew"]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare what may stand in the configuration."""
+    parser.addini(
+        "fuzzyq_scenarios",
+        "folders in which every *.yaml file is a scenario of fuzzyq_bullet",
+        type="paths",
+        default=[],
+    )
+    parser.addini(
+        "fuzzyq_plugins",
+        "Python modules or files that register planners which scenarios ask for",
+        type="args",
+        default=[],
+    )
+    parser.addini("fuzzyq_timeout", "wall-clock seconds that one scenario may take", default="120")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Note the folders once."""
+    config.stash[_folders] = list(config.getini("fuzzyq_scenarios"))
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """End the worker process, if there was one."""
+    crew = config.stash.get(_crew, None)
+    if crew is not None:
+        crew.close()
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """Take up scenario files; they are read when they are run."""
+    name = file_path.name
+    if not name.endswith(ENDINGS):
+        if not name.endswith(IN_FOLDERS):
+            return None
+        if not any(folder in file_path.parents for folder in parent.config.stash[_folders]):
+            return None
+    collector: pytest.Collector = ScenarioFile.from_parent(parent, path=file_path)
+    return collector
+
+
+@pytest.fixture
+def run_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioRun]:
+    """Run a scenario in this process: ``run_scenario("field.yaml", planner=..., seed=...)``.
+
+    A path is looked for beside the test first. What comes back has ``passed``, ``explanation``,
+    ``result`` and ``trajectory``.
+    """
+    from fuzzyq_bullet.checks import by_hand
+
+    def run(source: str | os.PathLike[str], **options: Any) -> ScenarioRun:
+        beside = request.path.parent / source
+        return by_hand.run_scenario(beside if beside.is_file() else source, **options)
+
+    return run
+
+
+class ScenarioFile(pytest.File):
+    """A scenario file: one test."""
+
+    def collect(self) -> Iterable[pytest.Item]:
+        """Return its test, called like the file."""
+        name = self.path.name
+        ending = next(one for one in (*ENDINGS, *IN_FOLDERS) if name.endswith(one))
+        yield ScenarioItem.from_parent(self, name=name.removesuffix(ending))
+
+
+class ScenarioItem(pytest.Item):
+    """One scenario, held to what it expects."""
+
+    def runtest(self) -> None:
+        """Run it in a worker process, which it may bring down.
+
+        Raises:
+            ScenarioFailedError: If it did not do what it expects, or could not be run.
+        """
+        from fuzzyq_bullet.checks.verdict import Job
+        from fuzzyq_bullet.checks.words import explanation
+        from fuzzyq_bullet.errors import UserError
+
+        job = Job(file=_from_here(self.path), name=self.name)
+        try:
+            ((_, verdict),) = _crew_of(self.config).check([job])
+        except UserError as error:
+            raise ScenarioFailedError(str(error)) from None
+        if verdict.status != "passed":
+            raise ScenarioFailedError(explanation(verdict))
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """Return the explanation alone; where in the plugin it was raised helps nobody."""
+        if isinstance(excinfo.value, ScenarioFailedError):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Return what the report is headed with."""
+        return self.path, None, f"scenario {self.name}"
+
+
+class ScenarioFailedError(Exception):
+    """Why a scenario failed, in lines for people."""
+
+
+def _crew_of(config: pytest.Config) -> Crew:
+    """Return the worker process of this session; with pytest-xdist each of its processes has one.
+
+    Raises:
+        UserError: If the time limit in the configuration is no number.
+    """
+    if _crew not in config.stash:
+        from fuzzyq_bullet.checks.crew import Crew
+        from fuzzyq_bullet.errors import UserError
+
+        given = str(config.getini("fuzzyq_timeout"))
+        try:
+            timeout = float(given)
+        except ValueError:
+            timeout = 0.0
+        if not 0.0 < timeout <= 86400.0:
+            raise UserError(f"fuzzyq_timeout: must be seconds, more than 0, got {given!r}")
+        base = config.inipath.parent if config.inipath is not None else config.rootpath
+        plugins = [
+            _from_here(base / name) if name.endswith(".py") else name
+            for name in config.getini("fuzzyq_plugins")
+        ]
+        config.stash[_crew] = Crew(1, plugins=plugins, timeout=timeout)
+    return config.stash[_crew]
+
+
+def _from_here(path: Path) -> str:
+    """Return a path as somebody in the current folder would write it."""
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)
