@@ -64,7 +64,7 @@ def test_what_the_other_planner_refuses_is_told(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(registry, "_entries", dict(registry._entries))
     registry.register_planner("narrow", Narrow, lambda settings, rng: None)  # type: ignore[arg-type,return-value]
     with pytest.raises(UserError) as caught:
-        with_options(asked(**SET), planner="narrow")
+        with_options(asked(name="improved-fuzzy", **SET), planner="narrow")
     (line,) = caught.value.problems
     assert line.startswith("planner: 'narrow' does not accept the scenario's planner.line_angle: ")
     fits = with_options(asked(turn_unit=0.5, samples=5), planner="narrow").planner
@@ -73,8 +73,8 @@ def test_what_the_other_planner_refuses_is_told(monkeypatch: pytest.MonkeyPatch)
 
 def test_planners_are_compared_at_the_same_speed(fuzzyq: Call, tmp_path: Path) -> None:
     options = ("--planner", "fuzzy", "--drive", "kinematic", "--no-video", "--out", tmp_path)
-    done = fuzzyq("run", "mixed", *options)
+    done = fuzzyq("run", "figure-12a", *options)
     assert done.returncode in (0, 1), done.stderr
-    record = Trajectory.load(tmp_path / "mixed.npz")
+    record = Trajectory.load(tmp_path / "figure-12a.npz")
     assert record.scenario.planner.name == "fuzzy"
     assert record.scenario.planner.model_dump()["weights"] == (1.0, 1.0)
