@@ -8,6 +8,8 @@ import typer
 
 from fuzzyq_bullet.cli.bench_escape import escape
 from fuzzyq_bullet.cli.bench_learning import learning
+from fuzzyq_bullet.cli.bench_steps import steps
+from fuzzyq_bullet.cli.bench_success import success
 from fuzzyq_bullet.cli.words import help_of
 
 app = typer.Typer(help="Measure the project itself.", no_args_is_help=True)
@@ -51,3 +53,5 @@ def speed(
 
 app.command("escape", help=help_of(escape))(escape)
 app.command("learning", help=help_of(learning))(learning)
+app.command("success", help=help_of(success))(success)
+app.command("steps", help=help_of(steps))(steps)

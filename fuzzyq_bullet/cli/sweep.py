@@ -12,10 +12,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fuzzyq_bullet.experiments.sweep.run import Progress, State
+    from fuzzyq_bullet.experiments.sweep.workers import Pool
     from fuzzyq_bullet.planning import PlannerSettings
     from fuzzyq_bullet.scenario import Drive
 
 NONE = "none"
+BACKENDS = ("loky", "dask")
 
 
 def counts_of(text: str, option: str) -> tuple[int, ...]:
@@ -69,6 +71,54 @@ def drives_of(text: str) -> tuple[Drive, ...]:
     return chosen
 
 
+def one_drive_of(text: str) -> Drive:
+    """Return the one drive that ``--drive`` asks for.
+
+    Raises:
+        UserError: If there is no such drive, or both are asked for.
+    """
+    drives = drives_of(text)
+    if len(drives) > 1:
+        raise UserError(f"--drive: one at a time here: {', '.join(drives)}")
+    return drives[0]
+
+
+def seed_of(seed: int) -> int:
+    """Return the seed of a sweep.
+
+    Raises:
+        UserError: If it is out of bounds.
+    """
+    from fuzzyq_bullet.experiments.sweep.jobs import MOST_SEED
+
+    if not 0 <= seed <= MOST_SEED:
+        raise UserError(f"--seed: must be from 0 to {MOST_SEED}, got {seed}")
+    return seed
+
+
+def planners_of(text: str) -> dict[str, PlannerSettings]:
+    """Return planners as they are set by default, each once, by their names.
+
+    Args:
+        text: Such as ``fuzzy,q-learning``.
+
+    Raises:
+        UserError: If there is no such planner.
+    """
+    from fuzzyq_bullet.planning import planner_names, settings_for
+    from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+
+    chosen = {}
+    for part in text.split(","):
+        name = part.strip()
+        if name not in planner_names():
+            hint = did_you_mean(name, planner_names())
+            allowed = ", ".join(planner_names())
+            raise UserError(f"--planners: no planner {shorten(name)}; {hint}allowed: {allowed}")
+        chosen[name] = settings_for(name).model_validate({"name": name})
+    return chosen
+
+
 def planner_of(name: str, weights: str | None) -> PlannerSettings:
     """Return the settings of a planner with these weights.
 
@@ -102,6 +152,38 @@ def planner_of(name: str, weights: str | None) -> PlannerSettings:
         raise UserError(f"--weights: {shorten(weights)}: {why}") from error
     except ValueError as error:
         raise UserError(f"--weights: must be two numbers such as 1,1, got {weights!r}") from error
+
+
+@contextmanager
+def pool_of(backend: str, scheduler: str | None, jobs: int | None) -> Iterator[Pool]:
+    """Yield who does the work of a sweep.
+
+    Args:
+        backend: ``loky``, processes of this machine, or ``dask``.
+        scheduler: Address of the Dask scheduler.
+        jobs: Episodes at a time; None for one a core.
+
+    Raises:
+        UserError: If there is no such backend, or its scheduler cannot be used.
+    """
+    from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+
+    if backend not in BACKENDS:
+        hint = did_you_mean(backend, BACKENDS)
+        allowed = ", ".join(BACKENDS)
+        raise UserError(f"--backend: no backend {shorten(backend)}; {hint}allowed: {allowed}")
+    if (backend == "dask") != (scheduler is not None):
+        raise UserError("--backend dask and --scheduler ADDRESS belong together")
+    if scheduler is None:
+        from fuzzyq_bullet.experiments.sweep.workers import Pool
+
+        yield Pool(jobs)
+        return
+
+    from fuzzyq_bullet.experiments.sweep.cluster import cluster
+
+    with cluster(scheduler, jobs) as pool:
+        yield pool
 
 
 @contextmanager
