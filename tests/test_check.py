@@ -1,0 +1,300 @@
+"""``fuzzyq check``: it fails when it should, for the right reason, and one failure stays alone."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import Call
+from lxml import etree
+
+from fuzzyq_bullet.checks.crew import Crew
+from fuzzyq_bullet.checks.junit import junit_xml
+from fuzzyq_bullet.checks.record import Entry, compare, this_platform
+from fuzzyq_bullet.checks.verdict import Job, Verdict
+
+PLANNERS = '''\
+"""What breaks robots, for tests: each by the name of a planner."""
+
+import math, os, time
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from fuzzyq_bullet import Decision, PlannerSettings, episode, register_planner
+from fuzzyq_bullet.drives import wheels
+from fuzzyq_bullet.planning import ImprovedFuzzyPlanner, ImprovedFuzzySettings
+
+
+class Settings(PlannerSettings):
+    name: Literal["bad"] = "bad"
+    how: str = "straight"
+
+
+class Bad:
+    def __init__(self, how):
+        self.how = how
+        self.good = ImprovedFuzzyPlanner(ImprovedFuzzySettings(weights=(1.0, 1.0)))
+
+    def decide(self, seen):
+        if self.how == "crash":
+            os.abort()
+        elif self.how == "hang":
+            while True:
+                time.sleep(0.01)
+        elif self.how == "eat":
+            kept = []
+            while True:
+                kept.append(bytearray(10**7))
+        elif self.how == "exit":
+            os._exit(3)
+        elif self.how == "raise":
+            raise ValueError("no\\nway")
+        elif self.how == "blind":
+            nothing = lambda headings: np.full(len(headings), seen.range)
+            return self.good.decide(replace(seen, sense=nothing, look=nothing))
+        elif self.how == "no-brakes":
+            return self.good.decide(seen)
+        (gx, gy), (x, y) = seen.goal, seen.position
+        return Decision(heading=math.atan2(gy - y, gx - x), step=0.4)
+
+
+register_planner("bad", Settings, lambda settings, rng: Bad(settings.how))
+
+sound, drive = wheels.ramp, episode.run
+
+
+def without_brakes(now, wanted, robot, dt):
+    then = sound(now, wanted, robot, dt)
+    return then._replace(speed=max(then.speed, now.speed))
+
+
+def run(scenario):
+    broken = getattr(scenario.planner, "how", "") == "no-brakes"
+    wheels.ramp = without_brakes if broken else sound
+    return drive(scenario)
+
+
+episode.run = run
+'''
+
+GATE = """\
+name: {name}
+arena: {{size: [4.0, 3.0]}}
+start: {{position: [0.5, 1.5]}}
+goal: {{position: [3.5, 1.5]}}
+planner: {planner}
+obstacles:
+  - {{shape: cylinder, position: [0.5, 0.5], radius: 0.1}}
+  - {{shape: box, position: [2.0, 1.5], size: [0.2, 1.0]}}
+limits: {{time: 40.0}}
+"""
+LINE = 8
+"""Where the box of the gate stands in the file."""
+
+LANE = """\
+name: {name}
+arena: {{size: [4.0, 2.0]}}
+start: {{position: [0.5, 1.0]}}
+goal: {{position: [3.5, 1.0]}}
+planner: {{name: bad, how: straight}}
+obstacles:
+  - {{shape: cylinder, position: [0.5, 1.6], radius: 0.1}}
+  - {{shape: cylinder, position: [2.0, {y}], radius: 0.2}}
+"""
+HOWS = ("crash", "eat", "exit", "raise", "straight", "blind", "no-brakes")
+
+
+def gate(name: str) -> str:
+    good = "{name: improved-fuzzy, weights: [1.0, 1.0]}"
+    return GATE.format(name=name, planner=f"{{name: bad, how: {name}}}" if name in HOWS else good)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("check")
+    (folder / "planners.py").write_text(PLANNERS)
+    fields = folder / "fields"
+    fields.mkdir()
+    for name in (*HOWS, "good"):
+        (fields / f"{name}.yaml").write_text(gate(name))
+    # The robot's radius and the cylinder's together are 0.4 m. The second lane is touched along
+    # 2·√(0.4² − 0.3999²) = 18 mm: seven physics steps at full speed.
+    for name, y in (("clear", 1.402), ("graze", 1.3999), ("moved", 1.0)):
+        (fields / f"{name}.yaml").write_text(LANE.format(name=name, y=y))
+    (fields / "wrong.yaml").write_text("name: wrong\nstart: here\n")
+    (fields / "zzz.yaml").write_text(gate("good"))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def checked(fuzzyq: Call, folder: Path) -> subprocess.CompletedProcess[str]:
+    options = ["--plugin", "planners.py", "--memory", "512", "--junit", "junit.xml"]
+    return fuzzyq("check", "fields", "--json", "--github", *options, cwd=folder)
+
+
+@pytest.fixture(scope="module")
+def verdicts(checked: subprocess.CompletedProcess[str]) -> dict[str, Verdict]:
+    told = json.loads(checked.stdout)["scenarios"]
+    return {one["name"]: Verdict.model_validate(one) for one in told}
+
+
+def test_what_is_sound_passes_beside_all_that_is_not(verdicts: dict[str, Verdict]) -> None:
+    assert {name for name, one in verdicts.items() if one.status == "passed"} == {"good", "clear"}
+
+
+@pytest.mark.parametrize("how", ["straight", "blind", "no-brakes", "moved", "graze"])
+def test_a_robot_that_is_broken_fails_at_the_obstacle_that_it_hit(
+    how: str, verdicts: dict[str, Verdict]
+) -> None:
+    verdict = verdicts[how]
+    assert verdict.status == "failed"
+    assert verdict.why[0] == "outcome collision, expected goal"
+    touch = verdict.touch
+    assert touch is not None
+    assert (touch.obstacle, touch.line, verdict.line) == (1, LINE, LINE)
+    assert f"obstacles[1] (fields/{how}.yaml:{LINE}) at (" in verdict.why[1]
+    assert verdict.result is not None
+    assert touch.time_s == pytest.approx(verdict.result.time_s, abs=1e-4)
+    assert math.dist(touch.point, (2.0, 1.2)) < 1.0
+    assert verdict.replay.startswith(f"fuzzyq check fields/{how}.yaml --plugin planners.py")
+
+
+@pytest.mark.parametrize(
+    ("how", "why"),
+    [
+        ("crash", "its process crashed: SIGABRT (aborted)"),
+        ("eat", "ran out of the memory that it may use (--memory)"),
+        ("exit", "its process ended by itself, with exit code 3"),
+        ("raise", "stopped by an error: ValueError: no way ("),
+    ],
+)
+def test_what_brings_its_process_down_fails_alone_and_says_how(
+    how: str, why: str, verdicts: dict[str, Verdict]
+) -> None:
+    assert verdicts[how].status == "broken"
+    assert verdicts[how].why[0].startswith(why)
+
+
+def test_wrong_input_is_told_and_outweighs_failures(
+    checked: subprocess.CompletedProcess[str],
+) -> None:
+    assert checked.returncode == 2
+    told = checked.stderr
+    assert "error: fields/wrong.yaml:1: goal: is required" in told
+    assert "error: fields/zzz.yaml:1: name: good is the name of fields/good.yaml too" in told
+    assert "Traceback" not in told
+    assert f"::error file=fields/straight.yaml,line={LINE},title=straight::outcome coll" in told
+    assert "::error file=fields/wrong.yaml,line=1," in told
+
+
+def test_a_hang_is_cut_and_the_next_goes_on(folder: Path) -> None:
+    (folder / "hang.yaml").write_text(
+        gate("good").replace("improved-fuzzy, weights: [1.0, 1.0]", "bad, how: hang")
+    )
+    files = (folder / "hang.yaml", folder / "fields" / "straight.yaml")
+    jobs = [Job(file=str(file), name=file.stem) for file in files]
+    with Crew(1, plugins=[str(folder / "planners.py")], timeout=4.0) as crew:
+        done = dict(crew.check(jobs))
+    assert done[0].status == "broken"
+    assert done[0].why[0].startswith("cut after 4 s of wall-clock time")
+    assert done[1].status == "failed"
+
+
+# Written after Ant's and Jenkins' schemas: what both allow, as far as check writes it.
+SCHEMA = """\
+<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema">
+ <xs:element name="testsuites"><xs:complexType><xs:sequence>
+  <xs:element name="testsuite" maxOccurs="unbounded"><xs:complexType><xs:sequence>
+   <xs:element name="properties"><xs:complexType/></xs:element>
+   <xs:element name="testcase" minOccurs="0" maxOccurs="unbounded"><xs:complexType>
+    <xs:choice minOccurs="0">
+     <xs:element name="failure" type="bad"/><xs:element name="error" type="bad"/>
+    </xs:choice>
+    <xs:attribute name="name" type="xs:token" use="required"/>
+    <xs:attribute name="classname" type="xs:token" use="required"/>
+    <xs:attribute name="time" type="xs:decimal" use="required"/>
+   </xs:complexType></xs:element>
+   <xs:element name="system-out" type="xs:string"/>
+   <xs:element name="system-err" type="xs:string"/>
+  </xs:sequence>
+   <xs:attribute name="name" type="xs:token" use="required"/>
+   <xs:attribute name="package" type="xs:token" use="required"/>
+   <xs:attribute name="id" type="xs:int" use="required"/>
+   <xs:attribute name="hostname" type="xs:token" use="required"/>
+   <xs:attribute name="timestamp" use="required"><xs:simpleType>
+    <xs:restriction base="xs:dateTime">
+     <xs:pattern value="[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}"/>
+    </xs:restriction></xs:simpleType></xs:attribute>
+   <xs:attribute name="tests" type="xs:int" use="required"/>
+   <xs:attribute name="failures" type="xs:int" use="required"/>
+   <xs:attribute name="errors" type="xs:int" use="required"/>
+   <xs:attribute name="time" type="xs:decimal" use="required"/>
+  </xs:complexType></xs:element>
+ </xs:sequence></xs:complexType></xs:element>
+ <xs:complexType name="bad"><xs:simpleContent><xs:extension base="xs:string">
+  <xs:attribute name="message" type="xs:string"/>
+  <xs:attribute name="type" type="xs:string" use="required"/>
+ </xs:extension></xs:simpleContent></xs:complexType>
+</xs:schema>
+"""
+
+
+def test_the_junit_report_is_valid_and_counts_right(
+    checked: subprocess.CompletedProcess[str], folder: Path
+) -> None:
+    schema = etree.XMLSchema(etree.parse(io.BytesIO(SCHEMA.encode())))
+    report = etree.parse(str(folder / "junit.xml"))
+    schema.assertValid(report)
+    suite = report.find("testsuite")
+    assert suite.get("failures") == "5"
+    assert int(suite.get("tests")) == len(suite.findall("testcase"))
+    assert int(suite.get("errors")) == 4 + len(json.loads(checked.stdout)["problems"])
+    # A name that XML cannot hold does not spoil it.
+    odd = Verdict(name="odd", file="a\x07b.yaml", status="broken", why=["\x1b[1m<&>"])
+    schema.assertValid(etree.fromstring(junit_xml([odd], ["a\x00b"], 1.0).encode()))
+
+
+@pytest.mark.parametrize("what", ["nothing", "empty", "no/**/*.yaml"])
+def test_no_scenario_is_an_error_and_no_green_run(what: str, fuzzyq: Call, tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    done = fuzzyq("check", what, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"error: {what}: ")
+
+
+def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
+    fuzzyq: Call, folder: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "good.yaml").write_text(gate("good"))
+    done = fuzzyq("check", ".", "--record", "--repeat", "2", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert [line.split()[1] for line in done.stdout.splitlines()] == ["good-seed-0", "good-seed-1"]
+    record = tmp_path / "check-record.json"
+    runs = json.loads(record.read_text())
+    figures = runs["runs"]["good/improved-fuzzy/wheels/0"]["result"]
+    figures["time_s"] /= 1.12
+    figures["min_clearance_m"] += 0.03
+    record.write_text(json.dumps(runs))
+    done = fuzzyq("check", ".", "--strict", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "changed: time +12 %: " in done.stdout
+    assert "changed: clearance −3.0 cm: " in done.stdout
+    done = fuzzyq("check", ".", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "changed: time +12 %: " in done.stdout
+
+
+def test_digests_count_on_one_platform_only(verdicts: dict[str, Verdict]) -> None:
+    now = verdicts["good"].result
+    assert now is not None
+    then = now.model_copy(update={"digest": "0" * 32})
+    here = Entry(file="good.yaml", platform=this_platform(), result=then)
+    assert "another trajectory" in compare(here, now)[0]
+    assert not compare(here.model_copy(update={"platform": "another"}), now)
+    assert not compare(here.model_copy(update={"result": now}), now)

@@ -1,0 +1,112 @@
+"""The pytest plugin: scenario files as tests of somebody else's project."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import TypeAlias
+from xml.etree import ElementTree
+
+import pytest
+from conftest import SHORT
+
+CRASH = """\
+name: crash
+arena: {size: [4.0, 4.0]}
+start: {position: [2.0, 2.0]}
+goal: {position: [3.5, 2.0]}
+planner: {name: fuzzy, weights: [2.0, 2.0]}
+obstacles:
+  - {shape: cylinder, position: [3.5, 3.5], radius: 0.1}
+  - {shape: box, position: [2.6, 1.6], size: [0.4, 1.2]}
+"""
+BY_HAND = """\
+import sys
+
+loaded = sys.modules.copy()
+
+
+def test_nothing_that_takes_time_is_imported_to_collect_scenarios():
+    heavy = {"pybullet", "numpy", "pydantic", "fuzzyq_bullet.scenario"}
+    assert not heavy & loaded.keys()
+
+
+def test_by_hand(run_scenario):
+    good, bad = run_scenario("fields/short.yaml", seed=4), run_scenario("crash.scenario.yaml")
+    assert good.passed and good.result.seed == 4, good.explanation
+    assert not bad.passed
+    assert "touched the box obstacles[1]" in bad.explanation
+    assert bad.trajectory.collision.obstacle == 1
+"""
+
+Done: TypeAlias = "subprocess.CompletedProcess[str]"
+
+
+def pytest_in(folder: Path, *args: str) -> Done:
+    """Run pytest with this plugin and xdist, whatever else is installed."""
+    plugins = ["-p", "fuzzyq_bullet.pytest_plugin", "-p", "xdist"]
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", *plugins, *args],
+        cwd=folder,
+        env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTEST_ADDOPTS": ""},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("project")
+    (folder / "pytest.ini").write_text("[pytest]\nfuzzyq_scenarios = fields\n")
+    (folder / "fields").mkdir()
+    (folder / "elsewhere").mkdir()
+    (folder / "fields" / "short.yaml").write_text(SHORT)
+    (folder / "elsewhere" / "compose.yaml").write_text("services: {}\n")
+    (folder / "crash.scenario.yaml").write_text(CRASH)
+    (folder / "test_by_hand.py").write_text(BY_HAND)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def ran(project: Path) -> Done:
+    return pytest_in(project, "-n", "2", "--junitxml=junit.xml", "-rA")
+
+
+def test_scenarios_are_tests_like_others_with_two_workers(ran: Done, project: Path) -> None:
+    assert ran.returncode == 1, ran.stdout + ran.stderr
+    assert "1 failed, 3 passed" in ran.stdout
+    assert "PASSED fields/short.yaml::short" in ran.stdout
+    cases = ElementTree.parse(project / "junit.xml").iter("testcase")
+    assert {case.get("name"): case.find("failure") is not None for case in cases} == {
+        "short": False,
+        "crash": True,
+        "test_by_hand": False,
+        "test_nothing_that_takes_time_is_imported_to_collect_scenarios": False,
+    }
+
+
+def test_a_failure_is_explained_without_a_traceback(ran: Done) -> None:
+    assert "outcome collision, expected goal\ntouched the box obstacles[1] (" in ran.stdout
+    assert "again: fuzzyq run crash.scenario.yaml" in ran.stdout
+    assert "pytest_plugin.py" not in ran.stdout + ran.stderr
+    assert "Traceback" not in ran.stdout + ran.stderr
+
+
+def test_the_last_failures_are_known_and_names_choose(ran: Done, project: Path) -> None:
+    again = pytest_in(project, "--lf", "-n", "0", "--collect-only", "-q")
+    assert "crash.scenario.yaml::crash" in again.stdout
+    assert "short" not in again.stdout
+    chosen = pytest_in(project, "-k", "short", "--collect-only", "-q")
+    assert chosen.stdout.startswith("fields/short.yaml::short\n")
+    assert "1/4 tests collected" in chosen.stdout
+
+
+def test_it_is_installed_as_a_plugin_and_takes_nothing_else(project: Path) -> None:
+    (entry,) = entry_points(group="pytest11", name="fuzzyq")
+    assert entry.value == "fuzzyq_bullet.pytest_plugin"
+    nothing = pytest_in(project / "elsewhere")
+    assert nothing.returncode == pytest.ExitCode.NO_TESTS_COLLECTED
