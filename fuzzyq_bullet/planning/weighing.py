@@ -32,9 +32,11 @@ class Weights(NamedTuple):
     breakout_at: float
 
 
-STEPS = (1.5, 2.0)
+STEPS = (1.0, 2.0)
 TURNS = (0.5, 1.0)
-BREAKOUTS = (1.0, 3.0, 5.0)
+BREAKOUTS = (1.0, 5.0)
+"""As soon as anything stands in the way as far as can be seen, or not before it must. The state
+tells how far away it is: to break out from 3·S_p on is to answer differently beyond that."""
 ACTIONS = tuple(Weights(*one) for one in product(STEPS, TURNS, BREAKOUTS))
 ACTION_NAMES = tuple(f"ω1 {a.step:g}, ω2 {a.turn:g}, c_f {a.breakout_at:g}" for a in ACTIONS)
 
