@@ -66,6 +66,7 @@ def recorded(
             turn=column("turn"),
             stride=column("stride"),
             weights=column("weights", 2),
+            breakout_at=column("breakout_at"),
             guard=column("guard"),
             target=column("target", 2),
         ),

@@ -25,7 +25,7 @@ from fuzzyq_bullet.scenario.models import Scenario
 Floats: TypeAlias = NDArray[np.float64]
 Outcome: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
 
-FORMAT = 1
+FORMAT = 2
 LONGEST = 7200.0
 """Longest run that is read (s): twice the greatest limit of a scenario."""
 _FAR = 1e7
@@ -79,6 +79,7 @@ class Decisions:
         turn: Shape (D,).
         stride: Shape (D,).
         weights: Shape (D, 2).
+        breakout_at: Shape (D,).
         guard: Shape (D,).
         target: Shape (D, 2).
     """
@@ -98,6 +99,7 @@ class Decisions:
     turn: Floats
     stride: Floats
     weights: Floats
+    breakout_at: Floats
     guard: Floats
     target: Floats
 

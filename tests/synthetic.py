@@ -117,6 +117,7 @@ def drive(
                     "turn": inferred.turn,
                     "stride": inferred.stride,
                     "weights": (1.0, 1.0),
+                    "breakout_at": 1.0,
                     "guard": math.nan,
                     "target": (math.nan, math.nan),
                 }

@@ -33,7 +33,6 @@ from fuzzyq_bullet.training.curves import last_mean
 from fuzzyq_bullet.training.order import Order
 from fuzzyq_bullet.training.recipes import RECIPES
 from fuzzyq_bullet.training.shipped import SHIPPED
-from fuzzyq_bullet.training.tasks import Tasks
 
 PLANNER = "fuzzy-q-lambda"
 EPISODES = 12
@@ -431,7 +430,7 @@ def test_a_shipped_policy_is_what_its_command_makes(planner: str) -> None:
         order.seed,
     )
     assert order.scenario is None
-    assert policy.scenario == Tasks(drive=order.drive, seed=order.seed).digest()
+    assert policy.scenario == RECIPES[planner].tasks(order.drive, order.seed).digest()
 
 
 def test_every_shipped_policy_has_a_command_and_every_command_a_planner_that_learns() -> None:

@@ -125,6 +125,7 @@ def blocked_ahead(position, difference):
         lengths=sense(lines),
         difference=difference,
         weights=(1.0, 1.0),
+        breakout_at=1.0,
     )
     observation = Observation(
         time=0.0,

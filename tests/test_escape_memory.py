@@ -658,7 +658,14 @@ class Walk:
         lines = np.array([bearing + 0.8, bearing, bearing - 0.8])
         lengths = np.array(seen.sense(lines))
         lengths[1] = lengths[1] if middle is None else middle
-        routine = Decision(heading=7.0, step=0.1, lines=lines, lengths=lengths, weights=(1.0, 1.0))
+        routine = Decision(
+            heading=7.0,
+            step=0.1,
+            lines=lines,
+            lengths=lengths,
+            weights=(1.0, 1.0),
+            breakout_at=1.0,
+        )
         return self.escape.decide(routine, seen)
 
 

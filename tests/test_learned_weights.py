@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,28 +23,31 @@ from fuzzyq_bullet.planning import (
     ImprovedFuzzySettings,
     make_planner,
 )
+from fuzzyq_bullet.planning.base import MODES, Mode
+from fuzzyq_bullet.planning.encounter import Encounters
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.planning.routine import Situation
 from fuzzyq_bullet.planning.weighing import ACTION_NAMES, ACTIONS, STATE_NAMES, features_of
 from fuzzyq_bullet.scenario import Scenario, Start, load_scenario, random_task, realise
-from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM, Tasks
+from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM, TRIES, Tasks
 from fuzzyq_bullet.training.ways import Ways
 from fuzzyq_bullet.training.weights import WeightsProblem
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-HALF = len(STATE_NAMES) // 2
-
 
 def situation(distance: float, difference: float) -> Situation:
     inferred = paper_controller().infer(distance, difference)
-    return Situation(0.0, 1.0, (0.8, 0.0, -0.8), np.ones(3), distance, difference, inferred)
+    return Situation(0.0, 1.0, (0.8, 0.0, -0.8), np.ones(3), distance, difference, False, inferred)
 
 
-def always(action: int) -> Policy:
-    """A policy that thinks most of one action wherever it is."""
-    row = [float(number == action) for number in range(len(ACTIONS))]
+def thinking(*best: int) -> Policy:
+    """A policy that thinks most of these actions in turn, from state to state."""
+    rows = [
+        [float(number == best[state % len(best)]) for number in range(len(ACTIONS))]
+        for state in range(len(STATE_NAMES))
+    ]
     return Policy(
         planner="fuzzy-q-lambda",
         learner="linear-q-lambda",
@@ -56,19 +60,15 @@ def always(action: int) -> Policy:
         parameters={},
         states=STATE_NAMES,
         actions=ACTION_NAMES,
-        table=[row] * len(STATE_NAMES),
+        table=rows,
     )
 
 
 @given(st.floats(0.0, 5.0), st.floats(-5.0, 5.0))
-def test_the_rules_make_the_state_and_sum_to_one_in_the_half_of_the_part_at_work(
-    distance: float, difference: float
-) -> None:
-    seen = situation(distance, difference)
-    for mode, first in (("routine", 0), ("breakout", HALF), ("following", HALF)):
-        state = features_of(seen, mode)  # type: ignore[arg-type]
-        assert state.values.sum() == pytest.approx(1.0)
-        assert ((state.indices >= first) & (state.indices < first + HALF)).all()
+def test_the_rules_make_the_state_and_sum_to_one(distance: float, difference: float) -> None:
+    state = features_of(situation(distance, difference))
+    assert state.values.sum() == pytest.approx(1.0)
+    assert (state.values >= 0.0).all()
 
 
 @given(st.floats(0.0, 5.0), st.floats(0.0, 0.5))
@@ -78,19 +78,50 @@ def test_what_stands_on_the_left_is_learned_from_what_stood_on_the_right(
     # Near Df = 0, where the two ends of Table 2, which are no mirror images, have no say.
     dense = np.zeros((2, len(STATE_NAMES)))
     for row, sign in zip(dense, (1, -1), strict=True):
-        state = features_of(situation(distance, sign * difference), "routine")
+        state = features_of(situation(distance, sign * difference))
         row[state.indices] = state.values
     assert dense[0] == pytest.approx(dense[1], abs=0.03)
 
 
 def test_the_strongest_feature_is_called_by_what_there_is() -> None:
-    def strongest(distance: float, difference: float, mode: str = "routine") -> str:
-        state = features_of(situation(distance, difference), mode)  # type: ignore[arg-type]
+    def strongest(distance: float, difference: float) -> str:
+        state = features_of(situation(distance, difference))
         return STATE_NAMES[int(state.indices[state.values.argmax()])]
 
-    assert strongest(0.1, 0.0) == "routine: VN even"
-    assert strongest(2.5, -2.2) == "routine: M small"
-    assert strongest(5.0, 5.0, "following") == "way out: VF big"
+    assert strongest(0.1, 0.0) == "VN even"
+    assert strongest(2.5, -2.2) == "M small"
+    assert strongest(5.0, 5.0) == "VF big"
+    clear = features_of(replace(situation(5.0, 0.0), clear=True))
+    assert [STATE_NAMES[index] for index in clear.indices] == ["clear"]
+
+
+@given(st.lists(st.tuples(st.floats(0.0, 3.0), st.sampled_from(MODES), st.booleans()), max_size=40))
+def test_a_choice_stands_until_the_robot_is_nearer_than_ever_and_on_no_way_out(
+    seen: list[tuple[float, Mode, bool]],
+) -> None:
+    encounters, nearest, chosen, was_clear = Encounters(), math.inf, math.inf, False
+    for to_goal, mode, clear in seen:
+        enough = 0.2 if clear != was_clear else 1.0
+        wanted = mode == "routine" and to_goal <= nearest and to_goal <= chosen - enough
+        assert encounters.begins(to_goal, mode, clear=clear) == wanted
+        nearest = min(nearest, to_goal)
+        if wanted:
+            chosen, was_clear = to_goal, clear
+
+
+def test_it_chooses_anew_only_where_an_encounter_begins(tmp_path: Path) -> None:
+    path = tmp_path / "two.json"
+    thinking(0, 1, len(ACTIONS) - 1).save(path)
+    task = realise(random_task(5, count=60))
+    record = run(task.model_copy(update={"planner": FuzzyQLambdaSettings(policy=str(path))}))
+    decisions = record.decisions
+    away = np.hypot(*(record.ticks.position[decisions.tick] - task.goal.position).T)
+    changed = np.flatnonzero((decisions.weights[1:] != decisions.weights[:-1]).any(axis=1)) + 1
+    assert changed.size > 3
+    assert (decisions.mode > 0).any()
+    for index in changed:
+        assert decisions.mode[index - 1] == 0
+        assert away[index] <= away[:index].min()
 
 
 @pytest.mark.parametrize("action", [0, len(ACTIONS) - 1])
@@ -98,7 +129,7 @@ def test_a_policy_that_knows_one_answer_drives_like_fixed_weights(
     action: int, tmp_path: Path
 ) -> None:
     path = tmp_path / "one.json"
-    always(action).save(path)
+    thinking(action).save(path)
     chosen = ACTIONS[action]
     task = realise(random_task(5, count=30))
     fixed = ImprovedFuzzySettings(
@@ -111,6 +142,20 @@ def test_a_policy_that_knows_one_answer_drives_like_fixed_weights(
     assert len(digests) == 1
 
 
+def test_with_a_larger_c_f_it_breaks_out_before_it_is_near() -> None:
+    task = realise(random_task(8, count=30))
+    settings = ImprovedFuzzySettings(weights=(2.0, 0.5), breakout_at=5.0)
+    record = run(task.model_copy(update={"planner": settings}))
+    decisions = record.decisions
+    here = record.ticks.position[decisions.tick]
+    to_goal = np.hypot(*(here - task.goal.position).T)
+    middle = decisions.lengths[:, 1]
+    assert (
+        middle[decisions.mode == 0] >= np.minimum(to_goal, 1.0)[decisions.mode == 0] - 1e-9
+    ).all()
+    assert middle[decisions.mode == 1][0] > 0.5
+
+
 def test_it_chooses_by_situation() -> None:
     weights = run(realise(load_scenario("mixed"))).decisions.weights
     assert DEFAULT_PLANNER == load_scenario("mixed").planner.name == "fuzzy-q-lambda"
@@ -120,7 +165,7 @@ def test_it_chooses_by_situation() -> None:
 def test_a_policy_file_that_changes_is_read_again(tmp_path: Path) -> None:
     path = tmp_path / "p.json"
     settings, rng = FuzzyQLambdaSettings(policy=str(path)), np.random.default_rng(0)
-    always(0).save(path)
+    thinking(0).save(path)
     make_planner(settings, rng)
     path.write_text("{}")
     with pytest.raises(UserError, match=r"p\.json"):
@@ -139,8 +184,9 @@ def test_a_policy_for_other_states_is_refused(tmp_path: Path) -> None:
         make_planner(FuzzyQLambdaSettings(policy=str(path)), np.random.default_rng(0))
 
 
-def test_what_an_episode_earns_is_its_delay() -> None:
-    tasks = Tasks(drive="wheels", counts=(10,))
+def test_what_an_episode_earns_is_its_delay(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fuzzyq_bullet.training.weights.MOST_LOST", math.inf)
+    tasks = Tasks(drive="wheels", scenario=load_scenario("u-shape"))
     problem = WeightsProblem(tasks)
     problem.reset(1)
     total, steps, over = 0.0, 0, False
@@ -150,9 +196,24 @@ def test_what_an_episode_earns_is_its_delay() -> None:
     assert problem.outcome == "goal"
     scenario = tasks.scenario_of(1)
     way = Ways(scenario).from_here(*scenario.start.position)
-    # All but the last few centimetres within the goal, and the last decision that it cut short.
-    delay = way / scenario.robot.max_speed - steps * 0.25
-    assert total == pytest.approx(delay, abs=0.25 + scenario.goal.radius / 0.6)
+    assert way > math.dist(scenario.start.position, scenario.goal.position) + 0.4
+    # The same drive once more, for its time. All but the last few centimetres within the goal.
+    fixed = ImprovedFuzzySettings(weights=ACTIONS[-1][:2], breakout_at=ACTIONS[-1].breakout_at)
+    time = run(scenario.model_copy(update={"planner": fixed})).ticks.time[-1]
+    delay = way / scenario.robot.max_speed - time
+    assert total == pytest.approx(delay, abs=scenario.goal.radius / 0.6)
+    assert 3 < steps < time / 0.25 / 2
+
+
+def test_a_long_search_counts_for_no_more_than_the_most(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fuzzyq_bullet.training.weights.MOST_LOST", 0.25)
+    problem = WeightsProblem(Tasks(drive="wheels", scenario=load_scenario("u-shape")))
+    problem.reset(1)
+    earned, over = [], False
+    while not over:
+        _, reward, over = problem.step(0)
+        earned.append(reward)
+    assert min(earned) == -0.25
 
 
 def test_tasks_repeat_have_a_way_and_are_none_that_a_sweep_has() -> None:
@@ -163,6 +224,12 @@ def test_tasks_repeat_have_a_way_and_are_none_that_a_sweep_has() -> None:
     assert all(feasible(one, ROOM) and one.seed >= FIRST_SEED for one in first)
     assert [len(one.obstacles) for one in first] == [50, 75, 100, 25, 50]
     assert tasks.digest() != Tasks(seed=4).digest()
+
+
+def test_a_field_without_a_way_is_drawn_anew() -> None:
+    dense = [Tasks(counts=(125,)).scenario_of(episode) for episode in range(1, 9)]
+    assert all(feasible(one, ROOM) for one in dense)
+    assert any(one.seed % TRIES for one in dense)
 
 
 @pytest.mark.parametrize("seed", [1])

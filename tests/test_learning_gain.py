@@ -388,7 +388,7 @@ def comparison(policy: Policy, seed: int, number: int = 8) -> Comparison:
 def test_the_search_takes_place_where_the_training_did() -> None:
     search = Search("kinematic", seed=3, episodes=3, candidates=(HALF,))
     for episode, job in enumerate(search.jobs(), start=1):
-        trained_on = Tasks(drive="kinematic", seed=3).scenario_of(episode)
+        trained_on = recipe_of("fuzzy-q-lambda").tasks("kinematic", 3).scenario_of(episode)
         ours = realise(job.scenario())
         assert ours.obstacles == trained_on.obstacles
         assert (ours.start, ours.goal) == (trained_on.start, trained_on.goal)

@@ -210,16 +210,17 @@ def _tasks(order: Order) -> Tasks:
     """
     from fuzzyq_bullet.planning import settings_for
     from fuzzyq_bullet.scenario import load_scenario, realise
-    from fuzzyq_bullet.training.tasks import Tasks
+    from fuzzyq_bullet.training.recipes import recipe_of
 
+    recipe = recipe_of(order.planner)
     if order.scenario is None:
-        return Tasks(drive=order.drive, seed=order.seed)
+        return recipe.tasks(order.drive, order.seed)
     asked = load_scenario(order.scenario, policies=False)
     # The planner that learns takes the place of the scenario's own, of which nothing is used.
     settings = settings_for(order.planner).model_validate({"name": order.planner})
     asked = asked.model_copy(update={"planner": settings})
     realise(asked)  # now rather than in an episode, should its obstacles find no place
-    return Tasks(drive=order.drive, seed=order.seed, scenario=asked)
+    return recipe.tasks(order.drive, order.seed, asked)
 
 
 def _begun(checkpoint: Path, *, resume: bool, anew: bool) -> int:

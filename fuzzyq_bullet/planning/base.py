@@ -114,6 +114,7 @@ class Decision:
         turn: N_a, the turn scale in [−2, 2], positive to the left.
         stride: N_s, the step scale in [0, 2].
         weights: (ω1, ω2) of Eq. 17: of the step and of the turn.
+        breakout_at: c_f, in units of S_p: with less than this free towards the goal it breaks out.
         guard: Free length sensed along the final heading (m), NaN where not sensed.
         target: The temporary goal of a way out (m), NaN when there is none.
         hopeless: True when the planner knows that it cannot go on; the episode ends as ``stuck``.
@@ -133,6 +134,7 @@ class Decision:
     turn: float = float("nan")
     stride: float = float("nan")
     weights: tuple[float, float] = (float("nan"), float("nan"))
+    breakout_at: float = float("nan")
     guard: float = float("nan")
     target: tuple[float, float] = (float("nan"), float("nan"))
     hopeless: bool = False

@@ -20,7 +20,7 @@ from fuzzyq_bullet.planning.places import Places
 from fuzzyq_bullet.planning.sweep import eased, first_free
 
 ENOUGH = 1.0 * STEP_UNIT
-"""c_f of the paper: a way free for less than this is blocked (m)."""
+"""What a turn must find free, as Fig. 6 has it (m)."""
 GAIN = 1.0 * STEP_UNIT
 """By how much nearer than ever before the line to the goal must lead to be taken again (m)."""
 PATIENCE = 2.5
@@ -49,29 +49,27 @@ class Escape:
         self._straight = False
         self._mark = math.nan
 
-    def decide(
-        self, routine: Decision, observation: Observation, enough: float = ENOUGH
-    ) -> Decision:
+    def decide(self, routine: Decision, observation: Observation) -> Decision:
         """Return the routine's decision while it serves, and another where it does not.
 
         Args:
-            routine: What the routine part would do.
+            routine: What the routine part would do, with the c_f in force.
             observation: What it was asked about.
-            enough: c_f: the line to the goal is blocked when it is free for less than this (m).
         """
         here, goal = observation.position, observation.goal
         to_goal = math.dist(here, goal)
         middle = float(routine.lengths[1])
+        enough = min(routine.breakout_at * STEP_UNIT, to_goal)
         if to_goal < self._nearest - NEARER:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._places.pass_by(here)
 
         if self._exit is not None:
             nearer = middle >= to_goal or to_goal - middle <= self._mark - GAIN
-            if not nearer or middle < min(enough, to_goal):
+            if not nearer or middle < enough:
                 return self._follow(routine, observation)
             self._exit, self._straight = None, True
-        blocked = middle < min(enough, to_goal)
+        blocked = middle < enough
         stalled = (
             not self._straight
             and observation.time - self._since > PATIENCE

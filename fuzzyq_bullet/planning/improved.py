@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Mode, Observation
+from fuzzyq_bullet.planning.base import Decision, Mode, Observation
 from fuzzyq_bullet.planning.escape import Escape
 from fuzzyq_bullet.planning.guard import guarded
 from fuzzyq_bullet.planning.routine import Routine, Situation
@@ -44,10 +44,12 @@ class Weighed:
             weights: (ω1, ω2) of Eq. 17.
             breakout_at: c_f in units of S_p, if another than that of the settings.
         """
-        decision = self._routine.step(situation, weights)
-        if self._escape is not None:
-            enough = (self._breakout_at if breakout_at is None else breakout_at) * STEP_UNIT
-            decision = self._escape.decide(decision, observation, enough)
+        if self._escape is None:
+            decision = self._routine.step(situation, weights)
+        else:
+            c_f = self._breakout_at if breakout_at is None else breakout_at
+            decision = self._routine.step(situation, weights, c_f)
+            decision = self._escape.decide(decision, observation)
         self.mode = decision.mode
         return guarded(decision, observation) if self._guard else decision
 

@@ -24,7 +24,8 @@ class Situation:
         lengths: Their free lengths (m), shape (3,).
         distance: d, in units of S_p.
         difference: Df, in units of S_p (Eq. 14).
-        inferred: What the controller makes of the two.
+        clear: Whether nothing is seen to stand in the way to the goal.
+        inferred: What the controller makes of d and Df.
     """
 
     bearing: float
@@ -33,6 +34,7 @@ class Situation:
     lengths: Floats
     distance: float
     difference: float
+    clear: bool
     inferred: Inference
 
 
@@ -60,16 +62,28 @@ class Routine:
         lengths = observation.sense(lines)
         left, middle, right = lengths.tolist()
 
-        if middle >= min(observation.range, to_goal):
+        clear = middle >= min(observation.range, to_goal)
+        if clear:
             distance, difference = observation.range / STEP_UNIT, 0.0
         else:
             nearest = middle if settings.distance == "middle" else min(left, middle, right)
             distance, difference = nearest / STEP_UNIT, (left - right) / STEP_UNIT  # Eqs. 13, 14
         inferred = self._controller.infer(distance, difference)
-        return Situation(bearing, to_goal, lines, lengths, distance, difference, inferred)
+        return Situation(bearing, to_goal, lines, lengths, distance, difference, clear, inferred)
 
-    def step(self, situation: Situation, weights: tuple[float, float]) -> Decision:
-        """Return the step that the controller proposes, weighted (Eqs. 15–17), unguarded."""
+    def step(
+        self,
+        situation: Situation,
+        weights: tuple[float, float],
+        breakout_at: float = math.nan,
+    ) -> Decision:
+        """Return the step that the controller proposes, weighted (Eqs. 15–17), unguarded.
+
+        Args:
+            situation: What is sensed.
+            weights: (ω1, ω2).
+            breakout_at: c_f, for the ways out and the record.
+        """
         w1, w2 = weights
         inferred = situation.inferred
         return Decision(
@@ -85,4 +99,5 @@ class Routine:
             turn=inferred.turn,
             stride=inferred.stride,
             weights=weights,
+            breakout_at=breakout_at,
         )

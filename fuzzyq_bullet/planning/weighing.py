@@ -14,7 +14,6 @@ import numpy as np
 
 from fuzzyq_bullet.fuzzy.paper import DISTANCE
 from fuzzyq_bullet.learning import Expected, Features
-from fuzzyq_bullet.planning.base import Mode
 from fuzzyq_bullet.planning.routine import Situation
 
 
@@ -34,36 +33,30 @@ class Weights(NamedTuple):
 
 STEPS = (1.0, 2.0)
 TURNS = (0.5, 1.0)
-BREAKOUTS = (1.0, 5.0)
-"""As soon as anything stands in the way as far as can be seen, or not before it must. The state
-tells how far away it is: to break out from 3·S_p on is to answer differently beyond that."""
+BREAKOUTS = (1.0, 4.0)
+"""Not before it must, or almost as soon as anything is seen to stand in the way."""
 ACTIONS = tuple(Weights(*one) for one in product(STEPS, TURNS, BREAKOUTS))
 ACTION_NAMES = tuple(f"ω1 {a.step:g}, ω2 {a.turn:g}, c_f {a.breakout_at:g}" for a in ACTIONS)
 
-PARTS = ("routine", "way out")
-"""Of the decision before: the controller's, or one of the two ways out."""
 SIDES = ("even", "small", "big")
 """Of |Df|: ZO, NS or PS, NB or PB. What is learned about one side serves for the other."""
-STATE_NAMES = tuple(
-    f"{part}: {near} {side}" for part in PARTS for near in DISTANCE.labels for side in SIDES
-)
+STATE_NAMES = ("clear", *(f"{near} {side}" for near in DISTANCE.labels for side in SIDES))
 
 
-def features_of(situation: Situation, mode: Mode) -> Features:
-    """Return φ(s), which sums to 1: the firing strengths (Eq. 2), apart for each part at work.
+def features_of(situation: Situation) -> Features:
+    """Return φ(s), which sums to 1: the firing strengths (Eq. 2), or ``clear`` and nothing else.
 
     Args:
-        situation: What is sensed now.
-        mode: Of the decision before.
+        situation: What is sensed where an encounter begins.
     """
+    if situation.clear:
+        return Features.one_hot(0)
     big, small, even, as_small, as_big = situation.inferred.rules.T
     strengths = np.stack([even, small + as_small, big + as_big], axis=1).ravel()
     total = float(strengths.sum())
-    firing = strengths / total if total > 0.0 else np.full(strengths.size, 1.0 / strengths.size)
-    degrees = np.zeros(len(STATE_NAMES))
-    first = 0 if mode == "routine" else strengths.size
-    degrees[first : first + strengths.size] = firing
-    return Features.of(degrees)
+    uniform = np.full(strengths.size, 1.0 / strengths.size)
+    firing = strengths / total if total > 0.0 else uniform
+    return Features.of(np.concatenate([[0.0], firing]))
 
 
 EXPECTED = Expected("fuzzy-q-lambda", STATE_NAMES, ACTION_NAMES, "linear-q-lambda")

@@ -16,6 +16,7 @@ from fuzzyq_bullet.learning import (
     Problem,
     QLambda,
     QLearning,
+    Schedule,
     Setup,
     train,
 )
@@ -24,17 +25,17 @@ from fuzzyq_bullet.planning.direct import ACTION_NAMES as HEADINGS
 from fuzzyq_bullet.planning.direct import EXPECTED as DIRECT
 from fuzzyq_bullet.planning.direct import STATE_NAMES as DIRECT_STATES
 from fuzzyq_bullet.planning.weighing import EXPECTED as WEIGHTS
+from fuzzyq_bullet.scenario import Drive, Scenario
 from fuzzyq_bullet.training.direct import DirectProblem
-from fuzzyq_bullet.training.tasks import Tasks
+from fuzzyq_bullet.training.tasks import COUNTS, Tasks
 from fuzzyq_bullet.training.weights import WeightsProblem
 from fuzzyq_bullet.version import __version__
 
-FORESIGHT = 0.97
-"""γ of ``fuzzy-q-lambda``. With four decisions a second the 0.95 of Table 1 would forget within
-five seconds, and a way round something takes longer."""
-MOST_STEPS = 240
-"""Decisions of it after which an episode is cut short (a minute): what is wrong with a way out that
-takes longer was decided before."""
+EAGER = Schedule(0.9, 0.4)
+"""ε of ``fuzzy-q-lambda``: 0.9 − 0.4·(i/N). What is learned is the best, whatever is tried; and an
+action that chance made look bad is found out only by being tried again."""
+SPARSE = (25, 50)
+"""Its fields. In denser ones what a choice changes drowns in what a search for a way out takes."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ class Recipe:
         problem: Makes what is to be learned, from the tasks to learn it on.
         learner: Makes what learns it.
         setup: How long and how fast, from the number of episodes and the seed.
+        counts: Numbers of obstacles of the random fields to learn in.
     """
 
     planner: str
@@ -54,6 +56,11 @@ class Recipe:
     problem: Callable[[Tasks], Problem[Any]]
     learner: Callable[[], Learner[Any]]
     setup: Callable[[int, int], Setup]
+    counts: tuple[int, ...] = COUNTS
+
+    def tasks(self, drive: Drive, seed: int, scenario: Scenario | None = None) -> Tasks:
+        """Return what it learns on."""
+        return Tasks(drive=drive, seed=seed, counts=self.counts, scenario=scenario)
 
 
 RECIPES = {
@@ -77,10 +84,9 @@ RECIPES = {
             planner="fuzzy-q-lambda",
             expected=WEIGHTS,
             problem=WeightsProblem,
-            learner=lambda: LinearQLambda(
-                len(WEIGHTS.states), len(WEIGHTS.actions), discount=FORESIGHT
-            ),
-            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, max_steps=MOST_STEPS),
+            learner=lambda: LinearQLambda(len(WEIGHTS.states), len(WEIGHTS.actions)),
+            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, exploration=EAGER),
+            counts=SPARSE,
         ),
     )
 }

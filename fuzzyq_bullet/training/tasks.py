@@ -21,6 +21,8 @@ MOST_SEED = (2**63 - FIRST_SEED) // SEEDS_APART - 1
 MOST_EPISODES = SEEDS_APART // TRIES
 ROOM = 0.22
 """Radius (m) of the disc for which there must be a way: what the detection lines can see."""
+COUNTS = (25, 50, 75, 100)
+"""Obstacles of random fields, taken in turn."""
 LIMITS = Limits(time=300.0, steps=5000)
 
 
@@ -37,7 +39,7 @@ class Tasks:
 
     drive: Drive = "wheels"
     seed: int = 0
-    counts: tuple[int, ...] = (25, 50, 75, 100)
+    counts: tuple[int, ...] = COUNTS
     scenario: Scenario | None = None
 
     def __post_init__(self) -> None:

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
-from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.scenario.models import Cylinder
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
@@ -126,19 +125,11 @@ def _breaks_out(trajectory: Trajectory, index: int) -> str:
     side = "straight ahead" if abs(way) < STRAIGHT else "to the " + _side(way)
     if not math.isfinite(ahead) or ahead < STEP_UNIT:
         because = "Blocked ahead"
-    elif ahead < _breakout_at(trajectory):
+    elif ahead < float(decisions.breakout_at[index]) * STEP_UNIT:
         because = f"Blocked {ahead:.1f} m ahead"
     else:
         because = "Comes no nearer"
     return f"{because}: breaks out {side}"
-
-
-def _breakout_at(trajectory: Trajectory) -> float:
-    """Return the free way (m) with less than which the robot breaks out; where learned, at most."""
-    planner = trajectory.scenario.planner
-    if isinstance(planner, PolicySettings):
-        return _MOST_ROOM * STEP_UNIT
-    return float(getattr(planner, "breakout_at", 1.0)) * STEP_UNIT
 
 
 def _steers(trajectory: Trajectory, index: int) -> str:

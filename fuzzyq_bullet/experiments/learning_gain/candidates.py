@@ -15,7 +15,7 @@ USUAL_BREAKOUT = ImprovedFuzzySettings().breakout_at
 
 MORE_STEPS = (0.5, 1.0, 1.5, 2.0)
 MORE_TURNS = (0.25, 0.5, 1.0, 1.5)
-MORE_BREAKOUTS = (3.0,)
+MORE_BREAKOUTS = (2.0, 3.0, 5.0)
 
 HALF = Weights(0.5, 0.5, USUAL_BREAKOUT)
 """What the paper holds its learned weights against."""

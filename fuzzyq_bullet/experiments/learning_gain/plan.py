@@ -18,6 +18,7 @@ from fuzzyq_bullet.learning import Policy
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.planning.weighing import Weights
 from fuzzyq_bullet.scenario import Drive, Limits
+from fuzzyq_bullet.training.recipes import recipe_of
 from fuzzyq_bullet.training.tasks import FIRST_SEED, Tasks
 
 LAYOUT = "scatter"
@@ -48,7 +49,7 @@ class Search:
     @property
     def tasks(self) -> Tasks:
         """Where the training took place."""
-        return Tasks(drive=self.drive, seed=self.seed)
+        return recipe_of("fuzzy-q-lambda").tasks(self.drive, self.seed)
 
     @cached_property
     def environments(self) -> tuple[Environment, ...]:
