@@ -74,10 +74,10 @@ def without_brakes(now, wanted, robot, dt):
     return then._replace(speed=max(then.speed, now.speed))
 
 
-def run(scenario):
+def run(scenario, **more):
     broken = getattr(scenario.planner, "how", "") == "no-brakes"
     wheels.ramp = without_brakes if broken else sound
-    return drive(scenario)
+    return drive(scenario, **more)
 
 
 episode.run = run

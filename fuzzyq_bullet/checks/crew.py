@@ -15,18 +15,15 @@ from contextlib import suppress
 from types import TracebackType
 from typing import Any, TypeAlias, TypeVar
 
+from fuzzyq_bullet.checks.replay import MEMORY_MB, TIMEOUT, check_command, replay_command
 from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
 from fuzzyq_bullet.checks.worker import COMMAND
 from fuzzyq_bullet.errors import UserError
 
-TIMEOUT = 120.0
-"""Wall-clock time (s) that one scenario may take."""
 FILM_TIMEOUT = 900.0
 """Wall-clock time (s) that one film may take."""
 START_TIMEOUT = 120.0
 """Wall-clock time (s) that a worker may take to load the libraries."""
-MEMORY_MB = 2048
-"""Memory that one worker may use (MB)."""
 
 AnyJob: TypeAlias = "Job | FilmJob"
 _J = TypeVar("_J", Job, FilmJob)
@@ -85,9 +82,15 @@ class Crew:
             if "verdict" in answer:
                 verdict = Verdict.model_validate(answer["verdict"])
             else:
-                verdict = _broken(jobs[i], answer["died"], self._plugins)
+                verdict = _broken(jobs[i], answer["died"])
             verdict.seconds = round(seconds, 3)
+            verdict.replay = jobs[i].again or self._command(jobs[i], verdict)
             yield i, verdict
+
+    def _command(self, job: Job, verdict: Verdict) -> str:
+        if verdict.result is not None:
+            return replay_command(job, self._plugins)
+        return check_command(job, self._plugins, timeout=self._timeout, memory_mb=self._memory_mb)
 
     def film(self, jobs: Sequence[FilmJob]) -> Iterator[tuple[int, str]]:
         """Make films; yield the index of each, and why it could not be made ("" if it was)."""
@@ -228,13 +231,6 @@ def _end_in_words(code: int) -> str:
     return f"its process crashed: {name} ({why})"
 
 
-def _broken(job: Job, why: str, plugins: Sequence[str]) -> Verdict:
-    from fuzzyq_bullet.checks.replay import replay_command
-
-    return Verdict(
-        name=job.name,
-        file=job.file,
-        status="broken",
-        why=[why],
-        replay=replay_command(job, plugins),
-    )
+def _broken(job: Job, why: str) -> Verdict:
+    no_film = "" if job.record is None else "its process ended with all that it had recorded"
+    return Verdict(name=job.name, file=job.file, status="broken", why=[why], no_film=no_film)

@@ -75,7 +75,7 @@ def main(settings: dict[str, Any]) -> None:
                 answer(filmed=False, why=str(error) or "out of memory")
         else:
             job = Job.model_validate(order["job"])
-            verdict = drive.drive(job, plugins=settings["plugins"])
+            verdict = drive.drive(job)
             answer(verdict=verdict.model_dump(mode="json"), retire=_resident() > RETIRE_AT * limit)
         signal.alarm(0)
 

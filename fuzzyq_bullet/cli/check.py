@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -46,10 +47,7 @@ def check(
     repeat: Annotated[
         int, typer.Option(min=1, max=10_000, help="Runs of each, with seeds that count up.")
     ] = 1,
-    plugin: Annotated[
-        list[str] | None,
-        typer.Option(metavar="MODULE", help="Python module or file to import first (repeatable)."),
-    ] = None,
+    plugin: PluginOption = None,
     jobs: Annotated[
         int | None, typer.Option(min=1, max=1024, help="Worker processes; one a core by default.")
     ] = None,
@@ -96,22 +94,21 @@ def check(
     from fuzzyq_bullet.checks.words import summary
     from fuzzyq_bullet.cli.console import say
     from fuzzyq_bullet.cli.process import say_error
-    from fuzzyq_bullet.files import writable_folder, write_text
+    from fuzzyq_bullet.files import writable_files, writable_folder, write_text
 
     if record and strict:
         raise UserError("--record and --strict exclude each other: one notes, the other compares")
     load_plugins(plugin or [])
     found = find(paths)
     folder = None if video is Video.none else writable_folder(out)
-    plan = planned(
-        found.files,
-        Plan(planner, seed, drive, repeat, keep=video.value, folder=folder),
-    )
+    # Whether a run behaves otherwise than recorded is known when its process is done with it.
+    keep = Video.all if strict and video is Video.failed else video
+    plan = planned(found.files, Plan(planner, seed, drive, repeat, keep=keep.value, folder=folder))
     if not plan.jobs:
         raise UserError(*found.problems, *plan.problems)
     problems = [*found.problems, *plan.problems]
     if junit is not None:
-        write_text(junit, "")  # a report that cannot be written is told before the work
+        writable_files(junit.parent, [junit.name])  # what cannot be is told before the work
     show = _printer(json=json, github=github, width=max(len(job.name) for job in plan.jobs))
     begun = time.monotonic()
     records = Records()
@@ -133,6 +130,9 @@ def check(
                     if strict and verdict.changes and verdict.status == "passed":
                         verdict.status = "failed"
                         verdict.why = ["behaves otherwise than recorded (--strict)"]
+                if video is Video.failed and verdict.record and verdict.status == "passed":
+                    Path(verdict.record).unlink(missing_ok=True)
+                    verdict.record = None
                 verdicts.append(verdict)
                 show(verdict)
         _make_films(crew, verdicts, say)
@@ -181,7 +181,8 @@ def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None])
     ]
     for i, why in crew.film(films):
         if why:
-            say(f"{films[i].video}: no film: {why}")
+            kept[i].no_film = why
+            say(f"no film {films[i].video}: {why}")
         else:
             kept[i].video = films[i].video
-            say(f"  {films[i].video}")
+            say(f"film {films[i].video}")
