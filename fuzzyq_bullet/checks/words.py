@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fuzzyq_bullet.checks.verdict import Verdict
 from fuzzyq_bullet.contact import plain
+from fuzzyq_bullet.errors import printable
 
 _MARKS = {"passed": "ok", "failed": "FAIL", "broken": "FAIL", "invalid": "ERROR"}
 
@@ -30,12 +31,14 @@ def lines_of(verdict: Verdict, width: int = 0) -> list[str]:
     lines += [f"      no film: {verdict.no_film}"] if verdict.no_film else []
     if verdict.status in ("failed", "broken") and verdict.replay:
         lines.append(f"      again: {verdict.replay}")
-    return lines
+    return [printable(line) for line in lines]
 
 
 def explanation(verdict: Verdict) -> str:
-    """Return all that is known about a failure, for a report of a test."""
-    return "\n".join(line.removeprefix("      ") for line in lines_of(verdict))
+    """Return all that is known about a failure, the reason first, for a report of a test."""
+    first, *lines = (line.removeprefix("      ") for line in lines_of(verdict))
+    lines.insert(len(verdict.why), first)
+    return "\n".join(lines)
 
 
 def summary(verdicts: list[Verdict], problems: int, seconds: float) -> str:

@@ -46,8 +46,11 @@ def main(settings: dict[str, Any]) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
     def answer(**told: Any) -> None:
-        answers.write(json.dumps(told) + "\n")
-        answers.flush()
+        try:
+            answers.write(json.dumps(told) + "\n")
+            answers.flush()
+        except BrokenPipeError:  # whoever asked is gone
+            os._exit(1)
 
     from fuzzyq_bullet.checks.plugins import load_plugins
     from fuzzyq_bullet.errors import UserError

@@ -138,7 +138,10 @@ def check(
         _make_films(crew, verdicts, say)
     if record:
         for path in records.write(verdicts):
-            say(f"  {path}")
+            say(f"recorded in {path}")
+    if strict and records.missing:
+        say(f"{records.missing} not compared: not recorded yet (fuzzyq check --record)")
+    problems += records.problems
     for problem in problems:
         say_error(problem)
         if github:
