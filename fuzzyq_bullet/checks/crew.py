@@ -12,6 +12,7 @@ import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeAlias, TypeVar
 
@@ -19,6 +20,7 @@ from fuzzyq_bullet.checks.replay import MEMORY_MB, TIMEOUT, check_command, repla
 from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
 from fuzzyq_bullet.checks.worker import COMMAND
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import remove_parts
 
 FILM_TIMEOUT = 900.0
 """Wall-clock time (s) that one film may take."""
@@ -77,7 +79,10 @@ class Crew:
         Raises:
             UserError: If no worker can be started, for a plugin that does not load.
         """
-        orders = [{"job": job.model_dump(), "timeout": self._timeout} for job in jobs]
+        orders = [
+            {"job": job.model_dump(), "timeout": self._timeout, "writes": job.record}
+            for job in jobs
+        ]
         for i, answer, seconds in self._done(orders):
             if "verdict" in answer:
                 verdict = Verdict.model_validate(answer["verdict"])
@@ -94,7 +99,9 @@ class Crew:
 
     def film(self, jobs: Sequence[FilmJob]) -> Iterator[tuple[int, str]]:
         """Make films; yield the index of each, and why it could not be made ("" if it was)."""
-        orders = [{"film": job.model_dump(), "timeout": FILM_TIMEOUT} for job in jobs]
+        orders = [
+            {"film": job.model_dump(), "timeout": FILM_TIMEOUT, "writes": job.video} for job in jobs
+        ]
         for i, answer, _ in self._done(orders):
             yield i, "" if answer.get("filmed") else answer.get("why") or answer["died"]
 
@@ -181,6 +188,7 @@ class _Worker:
         self._said = b""
         self.ready = False
         self.order: int | None = None
+        self._writes: str | None = None
         self.since = time.monotonic()
         self.deadline = self.since + START_TIMEOUT
 
@@ -191,6 +199,7 @@ class _Worker:
         """Hand out an order; that nobody takes it is seen when listening."""
         self.order, self.since = index, time.monotonic()
         self.deadline = self.since + order["timeout"]
+        self._writes = order["writes"]
         assert self._process.stdin is not None
         with suppress(BrokenPipeError):
             self._process.stdin.write(json.dumps(order).encode() + b"\n")
@@ -217,6 +226,8 @@ class _Worker:
             assert pipe is not None
             with suppress(BrokenPipeError):
                 pipe.close()
+        if self._writes is not None:
+            remove_parts(Path(self._writes))
 
 
 def _end_in_words(code: int) -> str:

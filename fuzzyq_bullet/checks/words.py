@@ -6,6 +6,8 @@ from fuzzyq_bullet.checks.verdict import Verdict
 from fuzzyq_bullet.contact import plain
 from fuzzyq_bullet.errors import printable
 
+AGAIN = "      again: "
+"""What the command that replays a run begins with."""
 _MARKS = {"passed": "ok", "failed": "FAIL", "broken": "FAIL", "invalid": "ERROR"}
 
 
@@ -30,7 +32,7 @@ def lines_of(verdict: Verdict, width: int = 0) -> list[str]:
     lines += [f"      changed: {change}" for change in verdict.changes]
     lines += [f"      no film: {verdict.no_film}"] if verdict.no_film else []
     if verdict.status in ("failed", "broken") and verdict.replay:
-        lines.append(f"      again: {verdict.replay}")
+        lines.append(AGAIN + verdict.replay)
     return [printable(line) for line in lines]
 
 

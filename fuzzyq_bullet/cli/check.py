@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import shutil
+import sys
+import textwrap
 import time
 from enum import Enum
 from pathlib import Path
@@ -163,12 +166,42 @@ def _printer(*, json: bool, github: bool, width: int) -> Callable[[Verdict], Non
     from fuzzyq_bullet.checks.github import verdict_commands
     from fuzzyq_bullet.checks.words import lines_of
 
+    terminal = (sys.stderr if json else sys.stdout).isatty()
+
     def show(verdict: Verdict) -> None:
         lines = lines_of(verdict, width)
+        if terminal:
+            lines = _fitted(lines)
         for line in [*lines, *(verdict_commands(verdict) if github else [])]:
             typer.echo(line, err=json)
 
     return show
+
+
+def _fitted(lines: list[str]) -> list[str]:
+    """Return lines for a terminal: the mark coloured, what is too long broken between words.
+
+    Not so the command to copy, which the terminal itself breaks where it must.
+    """
+    from fuzzyq_bullet.checks.words import AGAIN
+
+    mark, rest = lines[0][:5], lines[0][5:]
+    if not os.environ.get("NO_COLOR"):
+        mark = typer.style(mark, fg="green" if mark.startswith("ok") else "red", bold=True)
+    columns = shutil.get_terminal_size().columns
+    told = [mark + rest]
+    for line in lines[1:]:
+        if line.startswith(AGAIN):
+            told.append(line)
+            continue
+        told += textwrap.wrap(
+            line,
+            columns,
+            subsequent_indent=" " * 8,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    return told
 
 
 def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None]) -> None:
