@@ -22,6 +22,7 @@ from fuzzyq_bullet.checks.crew import Crew
 from fuzzyq_bullet.checks.junit import junit_xml
 from fuzzyq_bullet.checks.record import Entry, compare, this_platform
 from fuzzyq_bullet.checks.verdict import Job, Verdict
+from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.trajectory import Trajectory
 
 PLANNERS = '''\
@@ -256,6 +257,23 @@ def test_a_hang_is_cut_and_the_next_goes_on(folder: Path) -> None:
     assert done[0].why[0].startswith("cut after 4 s of wall-clock time")
     assert done[0].no_film
     assert (done[1].status, done[1].record) == ("failed", record)
+
+
+def test_a_worker_that_dies_while_it_starts_is_replaced(folder: Path, tmp_path: Path) -> None:
+    dying = tmp_path / "dying.py"
+    dying.write_text(
+        "import os, pathlib\n"
+        f"lives = pathlib.Path({str(tmp_path / 'lives')!r})\n"
+        "if not lives.exists():\n    lives.touch()\n    os.abort()\n"
+    )
+    job = Job(file=str(folder / "fields" / "good.yaml"), name="good", drive="kinematic")
+    with Crew(1, plugins=[str(dying)]) as crew:
+        assert dict(crew.check([job]))[0].status == "passed"
+    (tmp_path / "lives").unlink()
+    dying.write_text("import os\nos._exit(7)\n")
+    told = "no worker process can be started: its process ended by itself, with exit code 7"
+    with Crew(1, plugins=[str(dying)]) as crew, pytest.raises(UserError, match=told):
+        dict(crew.check([job]))
 
 
 # Written after Ant's and Jenkins' schemas: what both allow, as far as check writes it.

@@ -26,6 +26,8 @@ FILM_TIMEOUT = 900.0
 """Wall-clock time (s) that one film may take."""
 START_TIMEOUT = 120.0
 """Wall-clock time (s) that a worker may take to load the libraries."""
+MOST_LOST = 3
+"""Workers that may end one after the other before they are ready: one may, short of memory."""
 
 AnyJob: TypeAlias = "Job | FilmJob"
 _J = TypeVar("_J", Job, FilmJob)
@@ -56,6 +58,7 @@ class Crew:
         self._timeout = timeout
         self._memory_mb = memory_mb
         self._workers: list[_Worker] = []
+        self._lost = 0
 
     def __enter__(self) -> Crew:
         return self
@@ -141,6 +144,7 @@ class Crew:
                 raise UserError(*answer["unable"])
             if "ready" in answer:
                 worker.be_ready()
+                self._lost = 0
                 continue
             yield from self._settle(worker, answer)
         now = time.monotonic()
@@ -160,7 +164,9 @@ class Crew:
         if order is not None:
             yield order, answer, seconds
         elif not started:
-            raise UserError(f"no worker process can be started: {answer['died']}")
+            self._lost += 1
+            if self._lost == MOST_LOST:
+                raise UserError(f"no worker process can be started: {answer['died']}")
 
     def _dismiss(self, worker: _Worker) -> None:
         worker.end()
