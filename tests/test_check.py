@@ -381,6 +381,7 @@ def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
     assert [line.split()[1] for line in done.stdout.splitlines()] == ["good-seed-0", "good-seed-1"]
     record = tmp_path / "check-record.json"
     runs = json.loads(record.read_text())
+    assert list(runs["runs"]) == [f"good/improved-fuzzy/wheels/{seed}" for seed in (0, 1)]
     figures = runs["runs"]["good/improved-fuzzy/wheels/0"]["result"]
     figures["time_s"] /= 1.12
     figures["min_clearance_m"] += 0.03
