@@ -15,3 +15,11 @@ class UserError(Exception):
     def __init__(self, *problems: str) -> None:
         super().__init__("\n".join(problems))
         self.problems: tuple[str, ...] = problems
+
+
+def printable(text: str) -> str:
+    """Return a text as one line that does nothing to a terminal.
+
+    A file's name may hold anything, a line feed or a terminal's command among them.
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

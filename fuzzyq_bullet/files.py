@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import secrets
 import shutil
 from collections.abc import Iterator, Sequence
@@ -77,6 +78,12 @@ def writable_files(folder: Path, names: Sequence[str]) -> list[Path]:
         if path.is_dir():
             raise UserError(f"{path}: cannot be written: there is a folder of that name")
     return paths
+
+
+def remove_parts(path: Path) -> None:
+    """Remove what a process that was killed left of a file that it was about to write."""
+    for part in path.parent.glob(f".{glob.escape(path.name)}.*.part"):
+        _remove(part)
 
 
 def _part(path: Path) -> Path:

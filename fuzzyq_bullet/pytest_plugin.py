@@ -76,7 +76,9 @@ def run_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioRun]:
 
     def run(source: str | os.PathLike[str], **options: Any) -> ScenarioRun:
         beside = request.path.parent / source
-        return by_hand.run_scenario(beside if beside.is_file() else source, **options)
+        again = _command(f"{_from_here(request.path)}::{_within(request.node.nodeid)}")
+        file = _from_here(beside) if beside.is_file() else source
+        return by_hand.run_scenario(file, again=again, **options)
 
     return run
 
@@ -104,11 +106,16 @@ class ScenarioItem(pytest.Item):
         from fuzzyq_bullet.checks.words import explanation
         from fuzzyq_bullet.errors import UserError
 
-        job = Job(file=_from_here(self.path), name=self.name)
+        file = _from_here(self.path)
+        # What lies on the path of pytest alone, only pytest finds again.
+        modules = any(not name.endswith(".py") for name in self.config.getini("fuzzyq_plugins"))
+        again = _command(f"{file}::{self.name}") if modules else ""
+        job = Job(file=file, name=self.name, again=again)
         try:
             ((_, verdict),) = _crew_of(self.config).check([job])
         except UserError as error:
-            raise ScenarioFailedError(str(error)) from None
+            problem = str(error).replace("--plugin:", "fuzzyq_plugins:")
+            raise ScenarioFailedError(problem) from None
         if verdict.status != "passed":
             raise ScenarioFailedError(explanation(verdict))
 
@@ -157,3 +164,15 @@ def _from_here(path: Path) -> str:
     """Return a path as somebody in the current folder would write it."""
     here = Path.cwd()
     return str(path.relative_to(here) if path.is_relative_to(here) else path)
+
+
+def _within(nodeid: str) -> str:
+    """Return what a test is called within its file."""
+    return nodeid.partition("::")[2]
+
+
+def _command(nodeid: str) -> str:
+    """Return the command that runs one test."""
+    import shlex
+
+    return shlex.join(["pytest", nodeid])

@@ -20,7 +20,7 @@ from fuzzyq_bullet.archive import read_arrays
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.planning.base import MODES
-from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.models import ANY_PLANNER, Scenario
 
 Floats: TypeAlias = NDArray[np.float64]
 Outcome: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
@@ -181,6 +181,8 @@ class Trajectory:
     def load(cls, path: Path) -> Trajectory:
         """Read a record written by ``save``.
 
+        Of a planner that is not registered here only the name is kept: what it did is all there.
+
         Raises:
             UserError: If the file is missing, damaged, or not a record of this format.
         """
@@ -194,7 +196,7 @@ class Trajectory:
             shown = repr(form)[:20]
             raise UserError(f"{path}: a record of format {shown}; this version reads {FORMAT}")
         try:
-            head = _Head.model_validate(meta)
+            head = _Head.model_validate(meta, context=ANY_PLANNER)
             ticks = Ticks(**_columns(arrays, "ticks", Ticks))
             decisions = Decisions(**_columns(arrays, "decisions", Decisions))
             _check(ticks, decisions)

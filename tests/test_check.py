@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import math
+import os
+import re
+import shlex
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from conftest import Call
 from lxml import etree
 
+from fuzzyq_bullet.checks.collect import find
 from fuzzyq_bullet.checks.crew import Crew
 from fuzzyq_bullet.checks.junit import junit_xml
 from fuzzyq_bullet.checks.record import Entry, compare, this_platform
 from fuzzyq_bullet.checks.verdict import Job, Verdict
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.trajectory import Trajectory
 
 PLANNERS = '''\
 """What breaks robots, for tests: each by the name of a planner."""
@@ -74,10 +82,10 @@ def without_brakes(now, wanted, robot, dt):
     return then._replace(speed=max(then.speed, now.speed))
 
 
-def run(scenario):
+def run(scenario, **more):
     broken = getattr(scenario.planner, "how", "") == "no-brakes"
     wheels.ramp = without_brakes if broken else sound
-    return drive(scenario)
+    return drive(scenario, **more)
 
 
 episode.run = run
@@ -110,6 +118,10 @@ obstacles:
 HOWS = ("crash", "eat", "exit", "raise", "straight", "blind", "no-brakes")
 
 
+MISSES = {"near": "{min_clearance: 0.5}", "late": "{max_time: 5.0}", "given-up": "time: 1.0"}
+"""What the sound planner cannot do at the gate, by name."""
+
+
 def gate(name: str) -> str:
     good = "{name: improved-fuzzy, weights: [1.0, 1.0]}"
     return GATE.format(name=name, planner=f"{{name: bad, how: {name}}}" if name in HOWS else good)
@@ -127,6 +139,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     # 2·√(0.4² − 0.3999²) = 18 mm: seven physics steps at full speed.
     for name, y in (("clear", 1.402), ("graze", 1.3999), ("moved", 1.0)):
         (fields / f"{name}.yaml").write_text(LANE.format(name=name, y=y))
+    for name, more in MISSES.items():
+        text = gate("good").replace("name: good", f"name: {name}")
+        (fields / f"{name}.yaml").write_text(
+            text.replace("time: 40.0", more) if name == "given-up" else f"{text}expect: {more}\n"
+        )
+    (fields / "link.yaml").symlink_to("nowhere.yaml")
     (fields / "wrong.yaml").write_text("name: wrong\nstart: here\n")
     (fields / "zzz.yaml").write_text(gate("good"))
     return folder
@@ -134,7 +152,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def checked(fuzzyq: Call, folder: Path) -> subprocess.CompletedProcess[str]:
-    options = ["--plugin", "planners.py", "--memory", "512", "--junit", "junit.xml"]
+    options = ["--plugin", "planners.py", "--memory", "512", "--junit", "reports/junit.xml"]
     return fuzzyq("check", "fields", "--json", "--github", *options, cwd=folder)
 
 
@@ -162,7 +180,20 @@ def test_a_robot_that_is_broken_fails_at_the_obstacle_that_it_hit(
     assert verdict.result is not None
     assert touch.time_s == pytest.approx(verdict.result.time_s, abs=1e-4)
     assert math.dist(touch.point, (2.0, 1.2)) < 1.0
-    assert verdict.replay.startswith(f"fuzzyq check fields/{how}.yaml --plugin planners.py")
+    assert verdict.replay == f"fuzzyq run fields/{how}.yaml --plugin planners.py"
+
+
+def test_a_run_that_touches_nothing_is_held_to_clearance_time_and_goal(
+    verdicts: dict[str, Verdict],
+) -> None:
+    near, late, given_up = (verdicts[name] for name in MISSES)
+    assert near.status == late.status == given_up.status == "failed"
+    assert re.fullmatch(r"least clearance 0\.\d{3} m, expected 0\.5 m or more", near.why[0])
+    assert near.touch is not None
+    assert (near.touch.obstacle, near.line) == (1, LINE)
+    assert re.fullmatch(r"took \d+\.\d s, expected 5 s or less", late.why[0])
+    assert given_up.why[0] == "outcome timeout, expected goal"
+    assert given_up.why[1].startswith("ended at (")
 
 
 @pytest.mark.parametrize(
@@ -179,6 +210,9 @@ def test_what_brings_its_process_down_fails_alone_and_says_how(
 ) -> None:
     assert verdicts[how].status == "broken"
     assert verdicts[how].why[0].startswith(why)
+    assert verdicts[how].replay == (
+        f"fuzzyq check fields/{how}.yaml --plugin planners.py --memory 512"
+    )
 
 
 def test_wrong_input_is_told_and_outweighs_failures(
@@ -188,9 +222,26 @@ def test_wrong_input_is_told_and_outweighs_failures(
     told = checked.stderr
     assert "error: fields/wrong.yaml:1: goal: is required" in told
     assert "error: fields/zzz.yaml:1: name: good is the name of fields/good.yaml too" in told
+    assert "error: fields/link.yaml: cannot be read: a link to nowhere.yaml, which is " in told
+    assert "2 passed, 12 failed, 4 mistakes in the input in " in told
     assert "Traceback" not in told
     assert f"::error file=fields/straight.yaml,line={LINE},title=straight::outcome coll" in told
     assert "::error file=fields/wrong.yaml,line=1," in told
+
+
+def test_the_printed_command_drives_the_same_again(
+    verdicts: dict[str, Verdict], folder: Path, fuzzyq: Call
+) -> None:
+    program, *words = shlex.split(verdicts["no-brakes"].replay)
+    assert program == "fuzzyq"
+    done = fuzzyq(*words, "--no-video", "--json", "--out", "again", cwd=folder)
+    then = verdicts["no-brakes"].result
+    assert then is not None
+    assert done.returncode == 1
+    assert json.loads(done.stdout)["digest"] == then.digest
+    # The record tells all that a film shows, also to who does not know the planner.
+    record = Trajectory.load(folder / "again" / "no-brakes.npz")
+    assert (record.scenario.planner.name, record.digest()) == ("bad", then.digest)
 
 
 def test_a_hang_is_cut_and_the_next_goes_on(folder: Path) -> None:
@@ -198,12 +249,31 @@ def test_a_hang_is_cut_and_the_next_goes_on(folder: Path) -> None:
         gate("good").replace("improved-fuzzy, weights: [1.0, 1.0]", "bad, how: hang")
     )
     files = (folder / "hang.yaml", folder / "fields" / "straight.yaml")
-    jobs = [Job(file=str(file), name=file.stem) for file in files]
+    record = str(folder / "hang.npz")
+    jobs = [Job(file=str(file), name=file.stem, record=record, keep="all") for file in files]
     with Crew(1, plugins=[str(folder / "planners.py")], timeout=4.0) as crew:
         done = dict(crew.check(jobs))
     assert done[0].status == "broken"
     assert done[0].why[0].startswith("cut after 4 s of wall-clock time")
-    assert done[1].status == "failed"
+    assert done[0].no_film
+    assert (done[1].status, done[1].record) == ("failed", record)
+
+
+def test_a_worker_that_dies_while_it_starts_is_replaced(folder: Path, tmp_path: Path) -> None:
+    dying = tmp_path / "dying.py"
+    dying.write_text(
+        "import os, pathlib\n"
+        f"lives = pathlib.Path({str(tmp_path / 'lives')!r})\n"
+        "if not lives.exists():\n    lives.touch()\n    os.abort()\n"
+    )
+    job = Job(file=str(folder / "fields" / "good.yaml"), name="good", drive="kinematic")
+    with Crew(1, plugins=[str(dying)]) as crew:
+        assert dict(crew.check([job]))[0].status == "passed"
+    (tmp_path / "lives").unlink()
+    dying.write_text("import os\nos._exit(7)\n")
+    told = "no worker process can be started: its process ended by itself, with exit code 7"
+    with Crew(1, plugins=[str(dying)]) as crew, pytest.raises(UserError, match=told):
+        dict(crew.check([job]))
 
 
 # Written after Ant's and Jenkins' schemas: what both allow, as far as check writes it.
@@ -249,10 +319,10 @@ def test_the_junit_report_is_valid_and_counts_right(
     checked: subprocess.CompletedProcess[str], folder: Path
 ) -> None:
     schema = etree.XMLSchema(etree.parse(io.BytesIO(SCHEMA.encode())))
-    report = etree.parse(str(folder / "junit.xml"))
+    report = etree.parse(str(folder / "reports" / "junit.xml"))
     schema.assertValid(report)
     suite = report.find("testsuite")
-    assert suite.get("failures") == "5"
+    assert suite.get("failures") == "8"
     assert int(suite.get("tests")) == len(suite.findall("testcase"))
     assert int(suite.get("errors")) == 4 + len(json.loads(checked.stdout)["problems"])
     # A name that XML cannot hold does not spoil it.
@@ -260,12 +330,46 @@ def test_the_junit_report_is_valid_and_counts_right(
     schema.assertValid(etree.fromstring(junit_xml([odd], ["a\x00b"], 1.0).encode()))
 
 
-@pytest.mark.parametrize("what", ["nothing", "empty", "no/**/*.yaml"])
-def test_no_scenario_is_an_error_and_no_green_run(what: str, fuzzyq: Call, tmp_path: Path) -> None:
+def test_no_scenario_is_an_error_and_no_green_run(fuzzyq: Call, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
-    done = fuzzyq("check", what, cwd=tmp_path)
+    (tmp_path / "old.xml").write_text("of yesterday")
+    paths = ["nothing", "empty", "no/**/*.yaml", ""]
+    done = fuzzyq("check", *paths, "--junit", "old.xml", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith(f"error: {what}: ")
+    lines = done.stderr.splitlines()
+    for path, line in zip(paths, lines, strict=True):
+        assert line.startswith(f"error: {path}: " if path else "error: an empty path; ")
+    assert (tmp_path / "old.xml").read_text() == "of yesterday"
+
+
+def test_a_folder_that_cannot_be_read_is_told_and_the_others_are_looked_into(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "locked").mkdir()
+    (tmp_path / "a" / "good.yaml").write_text(gate("good"))
+    scan = os.scandir
+
+    def refuse(path: str) -> Iterator[os.DirEntry[str]]:  # for root, no permission is missing
+        if str(path).endswith("locked"):
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
+        return scan(path)
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    found = find([str(tmp_path)])
+    assert found.files == [tmp_path / "a" / "good.yaml"]
+    assert found.problems == [f"{tmp_path / 'locked'}: cannot be read: Permission denied"]
+
+
+def test_a_record_that_cannot_be_read_is_a_mistake_and_the_scenario_runs(
+    fuzzyq: Call, tmp_path: Path
+) -> None:
+    (tmp_path / "good.yaml").write_text(gate("good"))
+    (tmp_path / "check-record.json").write_text("{")
+    done = fuzzyq("check", ".", "--strict", "--drive", "kinematic", cwd=tmp_path)
+    assert (done.returncode, done.stdout[:10]) == (2, "ok    good")
+    assert "1 not compared: not recorded yet" in done.stderr
+    assert "error: check-record.json: not a record of fuzzyq check --record" in done.stderr
 
 
 def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
@@ -277,6 +381,7 @@ def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
     assert [line.split()[1] for line in done.stdout.splitlines()] == ["good-seed-0", "good-seed-1"]
     record = tmp_path / "check-record.json"
     runs = json.loads(record.read_text())
+    assert list(runs["runs"]) == [f"good/improved-fuzzy/wheels/{seed}" for seed in (0, 1)]
     figures = runs["runs"]["good/improved-fuzzy/wheels/0"]["result"]
     figures["time_s"] /= 1.12
     figures["min_clearance_m"] += 0.03
@@ -285,9 +390,11 @@ def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
     assert done.returncode == 1
     assert "changed: time +12 %: " in done.stdout
     assert "changed: clearance −3.0 cm: " in done.stdout
+    assert "FAIL  good  goal" in done.stdout
     done = fuzzyq("check", ".", cwd=tmp_path)
     assert done.returncode == 0
     assert "changed: time +12 %: " in done.stdout
+    assert "1 passed, 1 changed in" in done.stderr
 
 
 def test_digests_count_on_one_platform_only(verdicts: dict[str, Verdict]) -> None:

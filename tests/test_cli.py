@@ -138,16 +138,16 @@ def test_a_collision_says_what_was_touched_where_and_when(
     assert done.returncode == 1
     summary, contact, *_ = done.stderr.splitlines()
     assert "least clearance 0.000 m" in summary
-    place = r"\(2\.\d\d, \d\.\d\d\) after \d+\.\d s"
+    place = r"\(2\.\d\d, \d\.\d\d\) after \d+\.\d\d s"
     assert re.fullmatch(rf"touched the box obstacles\[1\] at {place}", contact)
 
 
 @pytest.mark.parametrize(
     ("obstacle", "listed", "what"),
     [
-        (1, 2, "touched the box obstacles[1] at (0.00, 2.50) after 9.3 s"),
-        (0, 0, "touched the cylinder obstacles[0] (drawn) at (0.00, 2.50) after 9.3 s"),
-        (-1, 2, "touched a wall at (0.00, 2.50) after 9.3 s"),
+        (1, 2, "touched the box obstacles[1] at (0.00, 2.50) after 9.31 s"),
+        (0, 0, "touched the cylinder obstacles[0] (drawn) at (0.00, 2.50) after 9.31 s"),
+        (-1, 2, "touched a wall at (0.00, 2.50) after 9.31 s"),
     ],
 )
 def test_what_was_touched_is_named(obstacle: int, listed: int, what: str, filmed: Path) -> None:

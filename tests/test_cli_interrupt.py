@@ -75,6 +75,20 @@ def test_while_libraries_are_loaded(
 
 
 @BOTH
+def test_while_a_module_is_loaded_that_makes_another_error_of_it(
+    signum: signal.Signals, short: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "slow.py").write_text(
+        "import pathlib, time\n"
+        f"pathlib.Path({str(tmp_path / 'begun')!r}).touch()\n"
+        "try:\n    time.sleep(0.3)\nexcept BaseException:\n    raise ImportError('as numpy does')\n"
+    )
+    process = start("check", short, "--plugin", tmp_path / "slow.py")
+    wait_for((tmp_path / "begun").exists, process)
+    ends(process, signum)
+
+
+@BOTH
 def test_while_driving(signum: signal.Signals, long: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     process = start("run", long, "--out", out, "--json")

@@ -28,6 +28,11 @@ import sys
 
 loaded = sys.modules.copy()
 
+from typing import Literal
+
+from fuzzyq_bullet import Decision, PlannerSettings, register_planner
+
+
 
 def test_nothing_that_takes_time_is_imported_to_collect_scenarios():
     heavy = {"pybullet", "numpy", "pydantic", "fuzzyq_bullet.scenario"}
@@ -40,6 +45,23 @@ def test_by_hand(run_scenario):
     assert not bad.passed
     assert "touched the box obstacles[1]" in bad.explanation
     assert bad.trajectory.collision.obstacle == 1
+    assert "again: fuzzyq run crash.scenario.yaml" in bad.explanation
+
+
+class Settings(PlannerSettings):
+    name: Literal["own"] = "own"
+
+
+class Ahead:
+    def decide(self, seen):
+        return Decision(heading=0.0, step=0.4)
+
+
+def test_with_a_planner_that_only_this_file_knows(run_scenario):
+    register_planner("own", Settings, lambda settings, rng: Ahead())
+    bad = run_scenario("crash.scenario.yaml", planner="own")
+    test = "test_by_hand.py::test_with_a_planner_that_only_this_file_knows"
+    assert bad.explanation.endswith(f"again: pytest {test}"), bad.explanation
 """
 
 Done: TypeAlias = "subprocess.CompletedProcess[str]"
@@ -78,13 +100,14 @@ def ran(project: Path) -> Done:
 
 def test_scenarios_are_tests_like_others_with_two_workers(ran: Done, project: Path) -> None:
     assert ran.returncode == 1, ran.stdout + ran.stderr
-    assert "1 failed, 3 passed" in ran.stdout
+    assert "1 failed, 4 passed" in ran.stdout
     assert "PASSED fields/short.yaml::short" in ran.stdout
     cases = ElementTree.parse(project / "junit.xml").iter("testcase")
     assert {case.get("name"): case.find("failure") is not None for case in cases} == {
         "short": False,
         "crash": True,
         "test_by_hand": False,
+        "test_with_a_planner_that_only_this_file_knows": False,
         "test_nothing_that_takes_time_is_imported_to_collect_scenarios": False,
     }
 
@@ -92,6 +115,7 @@ def test_scenarios_are_tests_like_others_with_two_workers(ran: Done, project: Pa
 def test_a_failure_is_explained_without_a_traceback(ran: Done) -> None:
     assert "outcome collision, expected goal\ntouched the box obstacles[1] (" in ran.stdout
     assert "again: fuzzyq run crash.scenario.yaml" in ran.stdout
+    assert "crash.scenario.yaml::crash - outcome collision, expected goal" in ran.stdout
     assert "pytest_plugin.py" not in ran.stdout + ran.stderr
     assert "Traceback" not in ran.stdout + ran.stderr
 
@@ -102,7 +126,7 @@ def test_the_last_failures_are_known_and_names_choose(ran: Done, project: Path) 
     assert "short" not in again.stdout
     chosen = pytest_in(project, "-k", "short", "--collect-only", "-q")
     assert chosen.stdout.startswith("fields/short.yaml::short\n")
-    assert "1/4 tests collected" in chosen.stdout
+    assert "1/5 tests collected" in chosen.stdout
 
 
 def test_it_is_installed_as_a_plugin_and_takes_nothing_else(project: Path) -> None:

@@ -51,6 +51,8 @@ def find(paths: Sequence[str]) -> Found:
 
 def _files_of(path: str, problems: list[str]) -> list[Path]:
     try:
+        if not path:  # else it would become ".", as an unset variable in a script does
+            raise UserError("an empty path; give a file, a folder, a glob or a bundled name")
         if Path(path).is_dir():
             return sorted(_below(Path(path), problems))
         if glob.has_magic(path) and not Path(path).exists():
@@ -58,6 +60,7 @@ def _files_of(path: str, problems: list[str]) -> list[Path]:
             matches = sorted(glob.glob(path, recursive=True))  # noqa: PTH207
             files = [Path(match) for match in matches if match.endswith(ENDINGS)]
             return [file for file in files if file.is_file()]
+        _refuse_dead_link(Path(path))
         return [find_scenario(path)]
     except UserError as error:
         problems += error.problems
@@ -74,4 +77,19 @@ def _below(folder: Path, problems: list[str]) -> Iterator[Path]:
         folders[:] = [name for name in folders if not name.startswith(".")]
         for name in files:
             if name.endswith(ENDINGS) and not name.startswith("."):
-                yield Path(place, name)
+                try:
+                    _refuse_dead_link(Path(place, name))
+                except UserError as error:
+                    problems += error.problems
+                else:
+                    yield Path(place, name)
+
+
+def _refuse_dead_link(path: Path) -> None:
+    """Say so if a link leads nowhere, rather than that there is no such file.
+
+    Raises:
+        UserError: If it does.
+    """
+    if path.is_symlink() and not path.exists():
+        raise UserError(f"{path}: cannot be read: a link to {path.readlink()}, which is not there")

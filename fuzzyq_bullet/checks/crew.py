@@ -12,21 +12,22 @@ import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeAlias, TypeVar
 
+from fuzzyq_bullet.checks.replay import MEMORY_MB, TIMEOUT, check_command, replay_command
 from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
 from fuzzyq_bullet.checks.worker import COMMAND
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import remove_parts
 
-TIMEOUT = 120.0
-"""Wall-clock time (s) that one scenario may take."""
 FILM_TIMEOUT = 900.0
 """Wall-clock time (s) that one film may take."""
 START_TIMEOUT = 120.0
 """Wall-clock time (s) that a worker may take to load the libraries."""
-MEMORY_MB = 2048
-"""Memory that one worker may use (MB)."""
+MOST_LOST = 3
+"""Workers that may end one after the other before they are ready: one may, short of memory."""
 
 AnyJob: TypeAlias = "Job | FilmJob"
 _J = TypeVar("_J", Job, FilmJob)
@@ -57,6 +58,7 @@ class Crew:
         self._timeout = timeout
         self._memory_mb = memory_mb
         self._workers: list[_Worker] = []
+        self._lost = 0
 
     def __enter__(self) -> Crew:
         return self
@@ -80,18 +82,29 @@ class Crew:
         Raises:
             UserError: If no worker can be started, for a plugin that does not load.
         """
-        orders = [{"job": job.model_dump(), "timeout": self._timeout} for job in jobs]
+        orders = [
+            {"job": job.model_dump(), "timeout": self._timeout, "writes": job.record}
+            for job in jobs
+        ]
         for i, answer, seconds in self._done(orders):
             if "verdict" in answer:
                 verdict = Verdict.model_validate(answer["verdict"])
             else:
-                verdict = _broken(jobs[i], answer["died"], self._plugins)
+                verdict = _broken(jobs[i], answer["died"])
             verdict.seconds = round(seconds, 3)
+            verdict.replay = jobs[i].again or self._command(jobs[i], verdict)
             yield i, verdict
+
+    def _command(self, job: Job, verdict: Verdict) -> str:
+        if verdict.result is not None:
+            return replay_command(job, self._plugins)
+        return check_command(job, self._plugins, timeout=self._timeout, memory_mb=self._memory_mb)
 
     def film(self, jobs: Sequence[FilmJob]) -> Iterator[tuple[int, str]]:
         """Make films; yield the index of each, and why it could not be made ("" if it was)."""
-        orders = [{"film": job.model_dump(), "timeout": FILM_TIMEOUT} for job in jobs]
+        orders = [
+            {"film": job.model_dump(), "timeout": FILM_TIMEOUT, "writes": job.video} for job in jobs
+        ]
         for i, answer, _ in self._done(orders):
             yield i, "" if answer.get("filmed") else answer.get("why") or answer["died"]
 
@@ -131,6 +144,7 @@ class Crew:
                 raise UserError(*answer["unable"])
             if "ready" in answer:
                 worker.be_ready()
+                self._lost = 0
                 continue
             yield from self._settle(worker, answer)
         now = time.monotonic()
@@ -150,7 +164,9 @@ class Crew:
         if order is not None:
             yield order, answer, seconds
         elif not started:
-            raise UserError(f"no worker process can be started: {answer['died']}")
+            self._lost += 1
+            if self._lost == MOST_LOST:
+                raise UserError(f"no worker process can be started: {answer['died']}")
 
     def _dismiss(self, worker: _Worker) -> None:
         worker.end()
@@ -178,6 +194,7 @@ class _Worker:
         self._said = b""
         self.ready = False
         self.order: int | None = None
+        self._writes: str | None = None
         self.since = time.monotonic()
         self.deadline = self.since + START_TIMEOUT
 
@@ -188,6 +205,7 @@ class _Worker:
         """Hand out an order; that nobody takes it is seen when listening."""
         self.order, self.since = index, time.monotonic()
         self.deadline = self.since + order["timeout"]
+        self._writes = order["writes"]
         assert self._process.stdin is not None
         with suppress(BrokenPipeError):
             self._process.stdin.write(json.dumps(order).encode() + b"\n")
@@ -214,6 +232,8 @@ class _Worker:
             assert pipe is not None
             with suppress(BrokenPipeError):
                 pipe.close()
+        if self._writes is not None:
+            remove_parts(Path(self._writes))
 
 
 def _end_in_words(code: int) -> str:
@@ -228,13 +248,6 @@ def _end_in_words(code: int) -> str:
     return f"its process crashed: {name} ({why})"
 
 
-def _broken(job: Job, why: str, plugins: Sequence[str]) -> Verdict:
-    from fuzzyq_bullet.checks.replay import replay_command
-
-    return Verdict(
-        name=job.name,
-        file=job.file,
-        status="broken",
-        why=[why],
-        replay=replay_command(job, plugins),
-    )
+def _broken(job: Job, why: str) -> Verdict:
+    no_film = "" if job.record is None else "its process ended with all that it had recorded"
+    return Verdict(name=job.name, file=job.file, status="broken", why=[why], no_film=no_film)

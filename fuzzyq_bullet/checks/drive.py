@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.checks.explain import Source, in_words, nearest, touched, whereabouts
-from fuzzyq_bullet.checks.replay import replay_command
 from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.metrics import Result, result_of
@@ -18,28 +17,25 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
 
 
-def drive(job: Job, *, plugins: list[str] | None = None) -> Verdict:
+def drive(job: Job) -> Verdict:
     """Run a scenario and judge it; whatever goes wrong in it is part of the verdict."""
-    replay = replay_command(job, plugins or [])
-    verdict = Verdict(name=job.name, file=job.file, status="passed", replay=replay)
+    verdict = Verdict(name=job.name, file=job.file, status="passed")
     try:
         scenario = load_scenario(job.file, policies=job.planner is None)
         scenario = with_options(scenario, planner=job.planner, seed=job.seed, drive=job.drive)
         scenario = realise(scenario)
         trajectory = _run(scenario)
+        verdict = judge(trajectory, result_of(trajectory), verdict)
     except UserError as error:
         why = [_named(problem, job.file) for problem in error.problems]
         return verdict.model_copy(update={"status": "invalid", "why": why})
     except MemoryError:
-        why = ["ran out of the memory that it may use (--memory)"]
-        return verdict.model_copy(update={"status": "broken", "why": why})
+        return _broken(job, verdict, "ran out of the memory that it may use (--memory)")
     except Exception as error:  # of a planner of the user's own, or ours: the others go on
-        return verdict.model_copy(update={"status": "broken", "why": [_in_a_line(error)]})
-    judged = judge(trajectory, result_of(trajectory), verdict)
-    if job.record and (job.keep == "all" or (job.keep == "failed" and judged.why)):
-        trajectory.save(Path(job.record))
-        judged.record = job.record
-    return judged
+        return _broken(job, verdict, _in_a_line(error))
+    if job.record and (job.keep == "all" or (job.keep == "failed" and verdict.why)):
+        _keep(trajectory, job.record, verdict)
+    return verdict
 
 
 def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
@@ -81,6 +77,20 @@ def _run(scenario: Scenario) -> Trajectory:
     from fuzzyq_bullet import episode
 
     return episode.run(scenario)
+
+
+def _keep(trajectory: Trajectory, record: str, verdict: Verdict) -> None:
+    """Write the record; that this fails, as on a full disk, is no failure of the robot."""
+    try:
+        trajectory.save(Path(record))
+        verdict.record = record
+    except UserError as error:
+        verdict.no_film = str(error)
+
+
+def _broken(job: Job, verdict: Verdict, why: str) -> Verdict:
+    no_film = "" if job.record is None else "the run did not come to an end"
+    return verdict.model_copy(update={"status": "broken", "why": [why], "no_film": no_film})
 
 
 def _named(problem: str, file: str) -> str:

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from fuzzyq_bullet.checks.verdict import Touch
+from fuzzyq_bullet.contact import name_of, plain, touch_in_words
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import Result
-from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
 from fuzzyq_bullet.trajectory import Trajectory
 
@@ -46,7 +46,7 @@ def touched(trajectory: Trajectory, source: Source) -> Touch | None:
     if collision is None:
         return None
     return Touch(
-        what=_name(trajectory.scenario, collision.obstacle, source),
+        what=name_of(trajectory.scenario, collision.obstacle, source.listed),
         obstacle=collision.obstacle,
         line=source.line_of_obstacle(collision.obstacle),
         point=(round(collision.point[0], 6), round(collision.point[1], 6)),
@@ -62,7 +62,7 @@ def nearest(trajectory: Trajectory, source: Source) -> Touch:
     x, y = (float(value) for value in ticks.position[i])
     closest, _ = Field.of(scenario.obstacles, scenario.arena).nearest((x, y))
     return Touch(
-        what=_name(scenario, closest, source),
+        what=name_of(scenario, closest, source.listed),
         obstacle=closest,
         line=source.line_of_obstacle(closest),
         point=(round(x, 6), round(y, 6)),
@@ -73,12 +73,12 @@ def nearest(trajectory: Trajectory, source: Source) -> Touch:
 
 def in_words(touch: Touch, file: str) -> str:
     """Say when and where it was, at which obstacle and line of the file."""
+    place = f"{file}:{touch.line}"
+    if touch.distance_m <= 0:
+        return touch_in_words(touch.what, touch.point, touch.time_s, place)
     x, y = (plain(value, 2) for value in touch.point)
-    when = f"after {touch.time_s:.2f} s"
-    if touch.distance_m > 0:
-        near = f"{plain(touch.distance_m, 3)} m from {touch.what}"
-        return f"nearest {when}, {near} ({file}:{touch.line}), the robot at ({x}, {y})"
-    return f"touched {touch.what} ({file}:{touch.line}) at ({x}, {y}) {when}"
+    near = f"{plain(touch.distance_m, 3)} m from {touch.what} ({place})"
+    return f"nearest after {touch.time_s:.2f} s, {near}, the robot at ({x}, {y})"
 
 
 def whereabouts(trajectory: Trajectory, result: Result) -> str:
@@ -89,15 +89,3 @@ def whereabouts(trajectory: Trajectory, result: Result) -> str:
         f"ended at ({plain(x, 2)}, {plain(y, 2)}) after {result.time_s:.1f} s, "
         f"{plain(left, 2)} m from the goal"
     )
-
-
-def plain(value: float, digits: int) -> str:
-    """Return a number with so many digits, and no negative zero."""
-    return f"{round(float(value), digits) + 0.0:.{digits}f}"
-
-
-def _name(scenario: Scenario, index: int, source: Source) -> str:
-    if index < 0:
-        return "a wall"
-    drawn = "" if index < source.listed else " (drawn)"
-    return f"the {scenario.obstacles[index].shape} obstacles[{index}]{drawn}"

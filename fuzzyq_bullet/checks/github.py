@@ -41,7 +41,7 @@ def _command(kind: str, file: str, line: int, title: str, text: str) -> str:
 def _from_here(file: str) -> str:
     """Return a path as GitHub knows it: from the top of the checkout, which is the usual place."""
     top = Path(os.environ.get("GITHUB_WORKSPACE") or Path.cwd()).resolve()
-    path = Path(file).resolve()
+    path = Path(file).parent.resolve() / Path(file).name  # a link is the file that was checked
     return path.relative_to(top).as_posix() if path.is_relative_to(top) else file
 
 

@@ -26,6 +26,7 @@ def _load(name: str) -> None:
         if name.endswith(".py"):
             _load_file(Path(name))
         else:
+            _add_folder(Path())  # which the command has not on its path, as python -m has
             importlib.import_module(name)
     except Exception as error:  # whatever a user's module raises
         reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
@@ -40,6 +41,7 @@ def _load_file(path: Path) -> None:
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None or not path.is_file():
         raise FileNotFoundError("there is no such file")
+    _add_folder(path.parent)  # for what lies beside it
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
     try:
@@ -47,3 +49,10 @@ def _load_file(path: Path) -> None:
     except BaseException:
         del sys.modules[path.stem]
         raise
+
+
+def _add_folder(folder: Path) -> None:
+    """Make what lies in a folder importable, behind all else: it shadows nothing."""
+    entry = str(folder.resolve())
+    if entry not in sys.path:
+        sys.path.append(entry)

@@ -50,48 +50,62 @@ class Record(BaseModel):
 
 
 class Records:
-    """The records of all folders, read when first needed."""
+    """The records of all folders, read when first needed.
+
+    Attributes:
+        problems: A line for each that cannot be read or written; the others do their work.
+        missing: How many runs there was nothing to compare with.
+    """
 
     def __init__(self) -> None:
-        self._records: dict[Path, Record] = {}
+        self._records: dict[Path, Record | None] = {}
+        self.problems: list[str] = []
+        self.missing = 0
 
     def changes(self, verdict: Verdict) -> list[str]:
-        """Return what is otherwise than recorded; nothing where nothing was.
-
-        Raises:
-            UserError: If the record cannot be read.
-        """
+        """Return what is otherwise than recorded; nothing where nothing was."""
         if verdict.result is None:
             return []
-        entry = self._of(Path(verdict.file).parent).runs.get(_key(verdict.result))
-        return [] if entry is None else compare(entry, verdict.result)
+        record = self._of(Path(verdict.file).parent)
+        entry = None if record is None else record.runs.get(_key(verdict.result))
+        if entry is None:
+            self.missing += 1
+            return []
+        return compare(entry, verdict.result)
 
     def write(self, verdicts: Sequence[Verdict]) -> list[Path]:
         """Record the runs that passed, beside their scenarios; return what was written.
 
         Runs that were recorded before and are not among these stay, unless their file is gone.
-
-        Raises:
-            UserError: If a record cannot be read or written.
         """
         folders: dict[Path, Record] = {}
         for verdict in verdicts:
-            if verdict.status != "passed" or verdict.result is None:
-                continue
             file = Path(verdict.file)
-            record = folders.setdefault(file.parent, self._of(file.parent))
+            record = self._of(file.parent)
+            if verdict.status != "passed" or verdict.result is None or record is None:
+                continue
+            folders[file.parent] = record
             record.runs[_key(verdict.result)] = Entry(
                 file=file.name, platform=this_platform(), result=verdict.result
             )
+        written = []
         for folder, record in folders.items():
             kept = {k: e for k, e in sorted(record.runs.items()) if (folder / e.file).exists()}
             text = Record(runs=kept).model_dump_json(indent=1)
-            write_text(folder / FILE, text + "\n")
-        return [folder / FILE for folder in folders]
+            try:
+                write_text(folder / FILE, text + "\n")
+                written.append(folder / FILE)
+            except UserError as error:
+                self.problems += error.problems
+        return written
 
-    def _of(self, folder: Path) -> Record:
+    def _of(self, folder: Path) -> Record | None:
         if folder not in self._records:
-            self._records[folder] = read(folder / FILE)
+            try:
+                self._records[folder] = read(folder / FILE)
+            except UserError as error:
+                self._records[folder] = None
+                self.problems += error.problems
         return self._records[folder]
 
 

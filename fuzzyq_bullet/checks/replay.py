@@ -7,22 +7,51 @@ from collections.abc import Sequence
 
 from fuzzyq_bullet.checks.verdict import Job
 
+TIMEOUT = 120.0
+"""Wall-clock time (s) that one scenario may take, where nothing else is said."""
+MEMORY_MB = 2048
+"""Memory that one worker may use (MB), where nothing else is said."""
+
 
 def replay_command(job: Job, plugins: Sequence[str] = ()) -> str:
-    """Return a line for the shell.
+    """Return a line for the shell, which also leaves a film.
 
     Args:
         job: What was driven.
-        plugins: Modules it needs. Only ``fuzzyq check`` loads them; without any, ``fuzzyq run``
-            shows more of what happens.
+        plugins: Modules it needs.
     """
-    words = ["fuzzyq", "check" if plugins else "run", job.file]
+    return shlex.join(["fuzzyq", "run", *_words(job, plugins)])
+
+
+def check_command(
+    job: Job,
+    plugins: Sequence[str] = (),
+    *,
+    timeout: float = TIMEOUT,
+    memory_mb: int = MEMORY_MB,
+) -> str:
+    """Return a line for the shell that does it again within bounds, for what crashes or hangs.
+
+    Args:
+        job: What was driven.
+        plugins: Modules it needs.
+        timeout: Wall-clock time (s) that it had.
+        memory_mb: Memory (MB) that it had.
+    """
+    words = ["fuzzyq", "check", *_words(job, plugins)]
+    if timeout != TIMEOUT:
+        words += ["--timeout", f"{timeout:g}"]
+    if memory_mb != MEMORY_MB:
+        words += ["--memory", str(memory_mb)]
+    return shlex.join(words)
+
+
+def _words(job: Job, plugins: Sequence[str]) -> list[str]:
+    words = [f"./{job.file}" if job.file.startswith("-") else job.file]
     for plugin in plugins:
         words += ["--plugin", plugin]
     for option in ("planner", "seed", "drive"):
         value = getattr(job, option)
         if value is not None:
             words += [f"--{option}", str(value)]
-    if plugins:
-        words += ["--video", "all"]
-    return shlex.join(words)
+    return words

@@ -24,6 +24,7 @@ class Job(BaseModel):
         drive: Drive to use instead of its own.
         record: Where to keep the trajectory; None for nowhere.
         keep: Of which runs it is kept.
+        again: The command that does it again; empty for one of ``fuzzyq``.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -35,6 +36,7 @@ class Job(BaseModel):
     drive: str | None = None
     record: str | None = None
     keep: Keep = "none"
+    again: str = ""
 
 
 class FilmJob(BaseModel):
@@ -88,6 +90,7 @@ class Verdict(BaseModel):
         result: The figures of the run; None where there was none.
         record: The trajectory that was kept.
         video: The film that was made.
+        no_film: Why there is none, although one was asked for.
         seconds: Wall-clock time (s).
     """
 
@@ -103,4 +106,5 @@ class Verdict(BaseModel):
     result: Result | None = None
     record: str | None = None
     video: str | None = None
+    no_film: str = ""
     seconds: float = 0.0

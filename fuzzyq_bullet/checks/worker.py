@@ -46,8 +46,11 @@ def main(settings: dict[str, Any]) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
     def answer(**told: Any) -> None:
-        answers.write(json.dumps(told) + "\n")
-        answers.flush()
+        try:
+            answers.write(json.dumps(told) + "\n")
+            answers.flush()
+        except BrokenPipeError:  # whoever asked is gone
+            os._exit(1)
 
     from fuzzyq_bullet.checks.plugins import load_plugins
     from fuzzyq_bullet.errors import UserError
@@ -75,7 +78,7 @@ def main(settings: dict[str, Any]) -> None:
                 answer(filmed=False, why=str(error) or "out of memory")
         else:
             job = Job.model_validate(order["job"])
-            verdict = drive.drive(job, plugins=settings["plugins"])
+            verdict = drive.drive(job)
             answer(verdict=verdict.model_dump(mode="json"), retire=_resident() > RETIRE_AT * limit)
         signal.alarm(0)
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import shutil
+import sys
+import textwrap
 import time
 from enum import Enum
 from pathlib import Path
@@ -11,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -46,10 +50,7 @@ def check(
     repeat: Annotated[
         int, typer.Option(min=1, max=10_000, help="Runs of each, with seeds that count up.")
     ] = 1,
-    plugin: Annotated[
-        list[str] | None,
-        typer.Option(metavar="MODULE", help="Python module or file to import first (repeatable)."),
-    ] = None,
+    plugin: PluginOption = None,
     jobs: Annotated[
         int | None, typer.Option(min=1, max=1024, help="Worker processes; one a core by default.")
     ] = None,
@@ -96,22 +97,21 @@ def check(
     from fuzzyq_bullet.checks.words import summary
     from fuzzyq_bullet.cli.console import say
     from fuzzyq_bullet.cli.process import say_error
-    from fuzzyq_bullet.files import writable_folder, write_text
+    from fuzzyq_bullet.files import writable_files, writable_folder, write_text
 
     if record and strict:
         raise UserError("--record and --strict exclude each other: one notes, the other compares")
     load_plugins(plugin or [])
     found = find(paths)
     folder = None if video is Video.none else writable_folder(out)
-    plan = planned(
-        found.files,
-        Plan(planner, seed, drive, repeat, keep=video.value, folder=folder),
-    )
+    # Whether a run behaves otherwise than recorded is known when its process is done with it.
+    keep = Video.all if strict and video is Video.failed else video
+    plan = planned(found.files, Plan(planner, seed, drive, repeat, keep=keep.value, folder=folder))
     if not plan.jobs:
         raise UserError(*found.problems, *plan.problems)
     problems = [*found.problems, *plan.problems]
     if junit is not None:
-        write_text(junit, "")  # a report that cannot be written is told before the work
+        writable_files(junit.parent, [junit.name])  # what cannot be is told before the work
     show = _printer(json=json, github=github, width=max(len(job.name) for job in plan.jobs))
     begun = time.monotonic()
     records = Records()
@@ -133,12 +133,18 @@ def check(
                     if strict and verdict.changes and verdict.status == "passed":
                         verdict.status = "failed"
                         verdict.why = ["behaves otherwise than recorded (--strict)"]
+                if video is Video.failed and verdict.record and verdict.status == "passed":
+                    Path(verdict.record).unlink(missing_ok=True)
+                    verdict.record = None
                 verdicts.append(verdict)
                 show(verdict)
         _make_films(crew, verdicts, say)
     if record:
         for path in records.write(verdicts):
-            say(f"  {path}")
+            say(f"recorded in {path}")
+    if strict and records.missing:
+        say(f"{records.missing} not compared: not recorded yet (fuzzyq check --record)")
+    problems += records.problems
     for problem in problems:
         say_error(problem)
         if github:
@@ -160,12 +166,42 @@ def _printer(*, json: bool, github: bool, width: int) -> Callable[[Verdict], Non
     from fuzzyq_bullet.checks.github import verdict_commands
     from fuzzyq_bullet.checks.words import lines_of
 
+    terminal = (sys.stderr if json else sys.stdout).isatty()
+
     def show(verdict: Verdict) -> None:
         lines = lines_of(verdict, width)
+        if terminal:
+            lines = _fitted(lines)
         for line in [*lines, *(verdict_commands(verdict) if github else [])]:
             typer.echo(line, err=json)
 
     return show
+
+
+def _fitted(lines: list[str]) -> list[str]:
+    """Return lines for a terminal: the mark coloured, what is too long broken between words.
+
+    Not so the command to copy, which the terminal itself breaks where it must.
+    """
+    from fuzzyq_bullet.checks.words import AGAIN
+
+    mark, rest = lines[0][:5], lines[0][5:]
+    if not os.environ.get("NO_COLOR"):
+        mark = typer.style(mark, fg="green" if mark.startswith("ok") else "red", bold=True)
+    columns = shutil.get_terminal_size().columns
+    told = [mark + rest]
+    for line in lines[1:]:
+        if line.startswith(AGAIN):
+            told.append(line)
+            continue
+        told += textwrap.wrap(
+            line,
+            columns,
+            subsequent_indent=" " * 8,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    return told
 
 
 def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None]) -> None:
@@ -181,7 +217,8 @@ def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None])
     ]
     for i, why in crew.film(films):
         if why:
-            say(f"{films[i].video}: no film: {why}")
+            kept[i].no_film = why
+            say(f"no film {films[i].video}: {why}")
         else:
             kept[i].video = films[i].video
-            say(f"  {films[i].video}")
+            say(f"film {films[i].video}")

@@ -12,7 +12,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, NoReturn
 
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.errors import UserError, printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
 BAD_INPUT = 2
 _GRACE = 2.0
-"""Time (s) in which nothing interrupts the tidying up after an interrupt."""
+"""Time (s) in which nothing interrupts the tidying up after an interrupt, nor one an import."""
+_SOON = 0.02
+"""Time (s) after which an interrupt that came during an import is tried again."""
 
 
 class Stopped(BaseException):
@@ -68,9 +70,7 @@ def _status_of(command: Callable[[], int]) -> int:
 
 def say_error(problem: str) -> None:
     """Print one line about something that went wrong."""
-    # A file's name may hold anything, a line feed or a terminal's command among them.
-    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in problem)
-    line = f"error: {shown}"
+    line = f"error: {printable(problem)}"
     if sys.stderr.isatty() and not os.environ.get("NO_COLOR"):
         line = f"\x1b[1;31m{line}\x1b[0m"
     print(line, file=sys.stderr, flush=True)
@@ -80,23 +80,46 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def _catch_signals() -> None:
-    first: float | None = None
+    raised: float | None = None
+    asked: tuple[int, float] | None = None
 
     def stop(signum: int, frame: FrameType | None) -> None:
-        nonlocal first
+        nonlocal raised, asked
         now = time.monotonic()
-        if first is None or now - first > _GRACE:
-            first = now
-            raise Stopped(signum)
+        if raised is not None and now - raised <= _GRACE:
+            return
+        if asked is None:
+            if signum == signal.SIGALRM:
+                return
+            asked = signum, now
+        signum, since = asked
+        if _imports(frame) and now - since < _GRACE:
+            signal.setitimer(signal.ITIMER_REAL, _SOON)
+            return
+        raised, asked = now, None
+        raise Stopped(signum)
 
     for signum in _SIGNALS:
         # What is ignored from the start stays so: nohup, or a shell's job in the background.
         if signal.getsignal(signum) is not signal.SIG_IGN:
             signal.signal(signum, stop)
+    signal.signal(signal.SIGALRM, stop)
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Tell whether a module is being loaded, in which an exception may be lost or become another.
+
+    The import system ignores what is raised in its callbacks; numpy makes an ``ImportError`` of it.
+    """
+    while frame is not None:
+        if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _ignore_signals() -> None:
-    for signum in _SIGNALS:  # what is left to do takes no time
+    for signum in (*_SIGNALS, signal.SIGALRM):  # what is left to do takes no time
         signal.signal(signum, signal.SIG_IGN)
 
 

@@ -10,6 +10,7 @@ import typer
 from fuzzyq_bullet.cli.console import progress_bar, say
 from fuzzyq_bullet.cli.film import SpeedOption, film, film_name, films_of
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def run(
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed to use instead.")] = None,
     drive: Annotated[str | None, typer.Option(help="wheels (physics) or kinematic.")] = None,
+    plugin: PluginOption = None,
     out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
     video: Annotated[bool, typer.Option("--video/--no-video", help="Make the video.")] = True,
     speed: SpeedOption = 1.0,
@@ -43,21 +45,23 @@ def run(
     misses what the scenario expects.
     """
     # What takes long to load waits until the scenario is known to be right.
+    from fuzzyq_bullet.checks.plugins import load_plugins
     from fuzzyq_bullet.files import writable_files, write_text
     from fuzzyq_bullet.scenario import load_scenario, realise
 
+    load_plugins(plugin or [])
     given = load_scenario(scenario, policies=planner is None)  # another planner has its own
     asked = _with_options(given, planner=planner, seed=seed, drive=drive)
     task = realise(asked)
     names = [film_name(task.name, speed), f"{task.name}.npz", f"{task.name}.json"]
     mp4, npz, result_file = written = writable_files(out, names)
 
-    from fuzzyq_bullet.episode import run as run_episode
+    from fuzzyq_bullet import episode
     from fuzzyq_bullet.metrics import result_of
     from fuzzyq_bullet.verdict import missed
 
     with progress_bar("driving", task.limits.time) as (progress, bar):
-        trajectory = run_episode(
+        trajectory = episode.run(
             task,
             progress=lambda time, to_goal: progress.update(
                 bar, completed=time, note=f"{time:5.1f} s, {to_goal:4.1f} m to go"
@@ -96,8 +100,10 @@ def _with_options(scenario: Scenario, **options: Any) -> Scenario:
 def _summarise(
     result: Result, misses: Sequence[str], trajectory: Trajectory, *, listed: int
 ) -> None:
+    from fuzzyq_bullet.contact import plain
+
     clearance = result.min_clearance_m
-    near = "nothing near" if clearance is None else f"least clearance {_plain(clearance, 3)} m"
+    near = "nothing near" if clearance is None else f"least clearance {plain(clearance, 3)} m"
     say(
         f"{result.scenario}: {result.outcome} after {result.time_s:.1f} s, "
         f"path {result.path_length_m:.2f} m, {near} "
@@ -118,18 +124,10 @@ def touched(trajectory: Trajectory, listed: int) -> str:
         trajectory: The record of the run.
         listed: How many of its obstacles, the first ones, are in the scenario file.
     """
+    from fuzzyq_bullet.contact import name_of, touch_in_words
+
     collision = trajectory.collision
     if collision is None:
         return ""
-    i = collision.obstacle
-    if i < 0:
-        what = "a wall"
-    else:
-        shape = trajectory.scenario.obstacles[i].shape
-        what = f"the {shape} obstacles[{i}]" + ("" if i < listed else " (drawn)")
-    x, y = (_plain(value, 2) for value in collision.point)
-    return f"touched {what} at ({x}, {y}) after {collision.time:.1f} s"
-
-
-def _plain(value: float, digits: int) -> str:
-    return f"{round(value, digits) + 0.0:.{digits}f}"  # the sum makes 0 of a negative 0
+    what = name_of(trajectory.scenario, collision.obstacle, listed)
+    return touch_in_words(what, collision.point, collision.time)

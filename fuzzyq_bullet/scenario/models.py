@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationError
+from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationError, ValidationInfo
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
@@ -108,7 +108,12 @@ def _default_planner() -> PlannerSettings:
     return settings_for(DEFAULT_PLANNER).model_validate({"name": DEFAULT_PLANNER})
 
 
-def _choose_planner(value: Any) -> Any:
+ANY_PLANNER = "any planner"
+"""Context of a validation that takes a planner nobody registered here, as a mere name."""
+_LONGEST_NAME = 100
+
+
+def _choose_planner(value: Any, info: ValidationInfo) -> Any:
     """Turn a name, or parameters with or without one, into the settings of that planner.
 
     Mistakes among the parameters come out of ``model_validate`` with their own places, which
@@ -126,6 +131,8 @@ def _choose_planner(value: Any) -> Any:
         return value  # a mistake that pydantic names
     name = value.get("name", DEFAULT_PLANNER)
     if name not in planner_names():
+        if info.context == ANY_PLANNER and isinstance(name, str) and len(name) <= _LONGEST_NAME:
+            return PlannerSettings(name=name)
         mistake = PydanticCustomError(
             "unknown_planner",
             "must be one of {allowed}",
@@ -171,6 +178,7 @@ class Scenario(Model):
 
 
 __all__ = [
+    "ANY_PLANNER",
     "MAX_OBSTACLES",
     "MIN_RADIUS",
     "ROBOT_RADIUS",
