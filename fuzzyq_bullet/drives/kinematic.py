@@ -6,7 +6,7 @@ import math
 
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
+from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
@@ -19,7 +19,7 @@ class KinematicDriver:
     would meet on the straight line of the step, not only at its end.
     """
 
-    def __init__(self, world: World, field: Field, scenario: Scenario) -> None:
+    def __init__(self, world: Sight, field: Field, scenario: Scenario) -> None:
         self._world = world
         self._field = field
         self._goal = scenario.goal
