@@ -319,7 +319,8 @@ def test_walls_that_are_seen_later_count_as_if_all_had_been_known_from_the_start
         walls.add(later)
         ways = walls.ways_to_goal((0.0, 0.0), starts)
         assert ways == Walls(known).ways_to_goal((0.0, 0.0), starts)
-        assert math.isinf(ways[0]) and math.isfinite(ways[1])
+        assert math.isinf(ways[0])
+        assert math.isfinite(ways[1])
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.4, math.pi / 4])

@@ -11,6 +11,9 @@ from fuzzyq_bullet.planning.base import Decision, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
 
+ROUNDING = 1e-9
+"""More than a clearance may be told too long by rounding (m)."""
+
 
 class KinematicDriver:
     """Moves by Eq. 17 in the physical world's geometry, sensing with the same rays.
@@ -52,9 +55,11 @@ class KinematicDriver:
         """Move by one step (Eq. 17); stop at the first thing the disc would touch."""
         now = self.ticks[-1]
         step = decision.step
-        [free] = self._field.free_distance(
-            (now.x, now.y), decision.heading, ROBOT_RADIUS, step
-        ).tolist()
+        free = step
+        if step >= now.clearance - ROUNDING:  # what is farther away cannot stop the robot
+            [free] = self._field.free_distance(
+                (now.x, now.y), decision.heading, ROBOT_RADIUS, step
+            ).tolist()
         hit = free < step
         moved = min(step, free)
         x = now.x + moved * math.cos(decision.heading)

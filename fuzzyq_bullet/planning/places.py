@@ -97,7 +97,7 @@ class Places:
                     self._remember(doubtful_exits_of(index, place.point, place.view))
         if not self._exits:
             return None
-        ways, before = self._ways()
+        ways, before = self._ways({one.place for one in self._exits})
         chosen = self._cheapest([ways[one.place] + one.way for one in self._exits], goal)
         route, at = [chosen.point], chosen.place
         while at >= 0:
@@ -151,16 +151,20 @@ class Places:
         ways = [[next(found) for _ in range(count)] for count in counts]
         return [next(filter(math.isfinite, some), math.inf) for some in ways]
 
-    def _ways(self) -> tuple[list[float], list[int]]:
-        """Return the way (m) from the latest place to each, and what comes before it (Dijkstra)."""
+    def _ways(self, wanted: set[int]) -> tuple[list[float], list[int]]:
+        """Return the way (m) from the latest place to others, and what comes before it (Dijkstra).
+
+        Both are true for the wanted places and for those on the ways to them.
+        """
         last = len(self._places) - 1
         ways, before = [math.inf] * (last + 1), [-1] * (last + 1)
         ways[last] = 0.0
         heap = [(0.0, last)]
-        while heap:
+        while heap and wanted:
             way, at = heapq.heappop(heap)
             if way > ways[at]:
                 continue
+            wanted.discard(at)
             for other, further in self._places[at].ways.items():
                 if way + further < ways[other]:
                     ways[other], before[other] = way + further, at

@@ -47,6 +47,7 @@ class Routine:
     def __init__(self, settings: RoutineSettings) -> None:
         self._settings = settings
         self._controller = paper_controller(rules=settings.rules, samples=settings.samples)
+        self._unhindered: tuple[float, Inference] | None = None
 
     def sense(self, observation: Observation) -> Situation:
         """Cast the three lines and ask the controller (Steps 4–9)."""
@@ -62,10 +63,11 @@ class Routine:
 
         if middle >= min(observation.range, to_goal):
             distance, difference = observation.range / STEP_UNIT, 0.0
+            inferred = self._with_nothing_to_avoid(distance)
         else:
             nearest = middle if settings.distance == "middle" else min(left, middle, right)
             distance, difference = nearest / STEP_UNIT, (left - right) / STEP_UNIT  # Eqs. 13, 14
-        inferred = self._controller.infer(distance, difference)
+            inferred = self._controller.infer(distance, difference)
         return Situation(bearing, to_goal, lines, lengths, distance, difference, inferred)
 
     def step(self, situation: Situation, weights: tuple[float, float]) -> Decision:
@@ -86,3 +88,9 @@ class Routine:
             stride=inferred.stride,
             weights=weights,
         )
+
+    def _with_nothing_to_avoid(self, distance: float) -> Inference:
+        """Return what the controller says to this distance and Df = 0; asked once an episode."""
+        if self._unhindered is None or self._unhindered[0] != distance:
+            self._unhindered = (distance, self._controller.infer(distance, 0.0))
+        return self._unhindered[1]
