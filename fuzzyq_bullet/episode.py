@@ -12,6 +12,7 @@ from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.pilot import Twist
 from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner, make_planner
 from fuzzyq_bullet.recorder import recorded
@@ -42,14 +43,20 @@ def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
     # The first stream of the seed places the obstacles; the planner has the second to itself.
     rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(1,)))
     planner = make_planner(scenario.planner, rng)
-    with World(scenario.obstacles, scenario.arena) as world:
+    build = World if scenario.drive == "wheels" else Sight
+    with build(scenario.obstacles, scenario.arena) as world:
         return run_in(world, scenario, planner, progress=progress)
 
 
 def run_in(
-    world: World, scenario: Scenario, planner: Planner, *, progress: Progress | None = None
+    world: Sight, scenario: Scenario, planner: Planner, *, progress: Progress | None = None
 ) -> Trajectory:
-    """Run one episode of a realised scenario in a world that is already built for it."""
+    """Run one episode of a realised scenario in a world that is already built for it.
+
+    Raises:
+        ValueError: If the scenario is to be driven by wheels, and the world is there to be seen
+            only.
+    """
     episode = Episode(world, scenario)
     while episode.outcome is None:
         episode.advance(planner.decide(episode.observe()))
@@ -63,21 +70,19 @@ class Episode:
     """An episode that whoever holds it drives, a decision at a time.
 
     Args:
-        world: A world that is built for the scenario.
+        world: A world that is built for the scenario; the kinematic drive only looks at it.
         scenario: A realised scenario.
+
+    Raises:
+        ValueError: If there is nothing in the world for wheels to drive on.
 
     Attributes:
         outcome: How it ended; None while it goes on.
     """
 
-    def __init__(self, world: World, scenario: Scenario) -> None:
-        field = Field.of(scenario.obstacles, scenario.arena)
+    def __init__(self, world: Sight, scenario: Scenario) -> None:
         self._scenario = scenario
-        self._driver: Driver = (
-            WheelsDriver(world, field, scenario)
-            if scenario.drive == "wheels"
-            else KinematicDriver(world, field, scenario)
-        )
+        self._driver = _driver(world, scenario)
         self._decisions: list[tuple[int, Decision]] = []
         self._standstill = _Standstill(self.now)
         self.outcome: Outcome | None = None
@@ -142,6 +147,15 @@ class Episode:
         """See whether the episode is over."""
         count, limits = len(self._decisions), self._scenario.limits
         self.outcome = _outcome(self._driver, decision, count, limits, self._standstill)
+
+
+def _driver(world: Sight, scenario: Scenario) -> Driver:
+    field = Field.of(scenario.obstacles, scenario.arena)
+    if scenario.drive == "kinematic":
+        return KinematicDriver(world, field, scenario)
+    if not isinstance(world, World):
+        raise ValueError(f"the drive {scenario.drive} needs a world that can be touched")
+    return WheelsDriver(world, field, scenario)
 
 
 class _Standstill:

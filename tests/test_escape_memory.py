@@ -18,7 +18,7 @@ from fuzzyq_bullet.planning.course import Course, Leg
 from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
 from fuzzyq_bullet.planning.exits import exits_of
 from fuzzyq_bullet.planning.places import NEAR, Place, Places
-from fuzzyq_bullet.planning.promise import in_sight, ways_to_goal
+from fuzzyq_bullet.planning.promise import Walls
 from fuzzyq_bullet.planning.view import look_around
 from fuzzyq_bullet.scenario import Scenario
 
@@ -35,8 +35,6 @@ corner met from one side 1.22 m · sin 3° = 0.064 m are lost, and more only beh
 than 0.2 m."""
 ROUNDING = 1e-6
 """Headings are told to so much (rad), and so many metres more or less make no difference."""
-
-NO_WALLS = np.zeros((0, 2, 2))
 
 
 def observe(field, here, *, goal=(100.0, 0.0), time=0.0, sense=None):
@@ -148,12 +146,13 @@ def test_walls_lie_where_the_centre_of_the_disc_would_be_stopped(seen):
 def test_a_wall_in_front_is_seen_without_a_hole_and_its_end_is_open():
     field = Field(boxes=np.array([[1.0, 1.0, 0.2, 2.4, 0.0]]))  # from y = −0.2 up to 2.2
     walls = look_around(observe(field, (0.0, 0.0))).walls
-    crossed = [y for y in np.arange(-0.3, 0.45, 0.01) if not in_sight((0.0, y), (2.0, y), walls)]
+    known = Walls(walls)
+    crossed = [y for y in np.arange(-0.3, 0.45, 0.01) if not known.in_sight((0.0, y), (2.0, y))]
     assert crossed
     assert np.diff(crossed) == pytest.approx(0.01)
     assert crossed[-1] == pytest.approx(0.44)
     assert crossed[0] == pytest.approx(-0.3)  # −0.2 and half the width are blocked
-    assert in_sight((0.0, -0.45), (2.0, -0.45), walls)
+    assert known.in_sight((0.0, -0.45), (2.0, -0.45))
 
 
 def test_where_nothing_stands_all_is_free_and_there_are_no_walls():
@@ -261,15 +260,17 @@ WALL = np.array([[[1.0, -1.0], [1.0, 1.0]]])
     ],
 )
 def test_a_line_is_in_sight_if_it_neither_crosses_nor_touches_a_wall(start, goal, clear):
-    assert in_sight(start, goal, WALL) is clear
-    assert in_sight(goal, start, WALL) is clear
-    assert in_sight(start, goal, WALL[:, ::-1]) is clear
+    assert Walls(WALL).in_sight(start, goal) is clear
+    assert Walls(WALL).in_sight(goal, start) is clear
+    assert Walls(WALL[:, ::-1]).in_sight(start, goal) is clear
     far = WALL + 50.0
-    assert in_sight(start, goal, np.concatenate([far, WALL])) is clear
+    walls = Walls(far)
+    walls.add(WALL)
+    assert walls.in_sight(start, goal) is clear
 
 
 def test_without_walls_everything_is_in_sight():
-    assert in_sight((0.0, 0.0), (5.0, 5.0), NO_WALLS)
+    assert Walls().in_sight((0.0, 0.0), (5.0, 5.0))
 
 
 EIGHT = 1.0 / math.cos(math.pi / 8)
@@ -281,14 +282,14 @@ ENDS = 2.0 * math.sqrt(2.0) * promise.CELL
 @given(st.floats(-3, 3), st.floats(-3, 3))
 @settings(deadline=None, max_examples=20)
 def test_through_the_open_the_least_way_is_the_straight_one(x, y):
-    [way] = ways_to_goal((0.3, 0.2), NO_WALLS, [(x, y)])
+    [way] = Walls().ways_to_goal((0.3, 0.2), [(x, y)])
     straight = math.dist((x, y), (0.3, 0.2))
     assert straight - ENDS <= way <= EIGHT * straight + ENDS
 
 
 def test_around_a_wall_the_least_way_leads_past_its_nearer_end():
     wall = pieces(np.array([[[0.0, -4.0], [0.0, 1.0]]]), 40)
-    ways = ways_to_goal((1.0, 0.0), wall, [(-1.0, 0.0), (0.5, 0.0)])
+    ways = Walls(wall).ways_to_goal((1.0, 0.0), [(-1.0, 0.0), (0.5, 0.0)])
     around = 2.0 * math.sqrt(2.0)
     # The cells of the wall's end are gone round too.
     assert around - ENDS <= ways[0] <= EIGHT * around + ENDS + 2.0 * promise.CELL
@@ -308,11 +309,25 @@ def pieces(walls, count):
     return np.stack([ends[:, :-1], ends[:, 1:]], axis=2).reshape(-1, 2, 2)
 
 
+def test_walls_that_are_seen_later_count_as_if_all_had_been_known_from_the_start():
+    ring, starts = pieces(square(1.0), 40), [(3.0, 0.0), (0.5, 0.0)]
+    far = ring + np.array([6.0, 0.0])  # beyond all that was known: another grid
+    walls = Walls(ring[:-4])
+    [through, _] = walls.ways_to_goal((0.0, 0.0), starts)
+    assert math.isfinite(through)
+    for later, known in ((ring[-4:], ring), (far, np.concatenate([ring, far]))):
+        walls.add(later)
+        ways = walls.ways_to_goal((0.0, 0.0), starts)
+        assert ways == Walls(known).ways_to_goal((0.0, 0.0), starts)
+        assert math.isinf(ways[0])
+        assert math.isfinite(ways[1])
+
+
 @pytest.mark.parametrize("turned", [0.0, 0.4, math.pi / 4])
 def test_out_of_an_enclosure_there_is_no_way_and_within_it_there_is(turned):
     walls = pieces(square(1.0), 40)
     turn = np.array([[math.cos(turned), -math.sin(turned)], [math.sin(turned), math.cos(turned)]])
-    out, within = ways_to_goal((0.0, 0.0), walls @ turn.T, [(3.0, 0.0), (0.5, 0.0)])
+    out, within = Walls(walls @ turn.T).ways_to_goal((0.0, 0.0), [(3.0, 0.0), (0.5, 0.0)])
     assert out == math.inf
     assert within == pytest.approx(0.5, abs=ENDS)
 
@@ -327,7 +342,8 @@ def test_however_large_the_world_the_grid_stays_small(size, monkeypatch):
 
     dijkstra = promise.dijkstra
     monkeypatch.setattr(promise, "dijkstra", counting)
-    [way] = ways_to_goal((0.0, 0.0), pieces(square(0.4, (size / 2, 0.0)), 40), [(size, size)])
+    walls = Walls(pieces(square(0.4, (size / 2, 0.0)), 40))
+    [way] = walls.ways_to_goal((0.0, 0.0), [(size, size)])
     straight = size * math.sqrt(2.0)
     assert way == pytest.approx(straight, rel=0.09)
     assert 0.2 * promise.MOST < sizes[0] <= 1.1 * promise.MOST

@@ -6,10 +6,13 @@ import math
 
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
+from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
+
+ROUNDING = 1e-9
+"""More than a clearance may be told too long by rounding (m)."""
 
 
 class KinematicDriver:
@@ -19,7 +22,7 @@ class KinematicDriver:
     would meet on the straight line of the step, not only at its end.
     """
 
-    def __init__(self, world: World, field: Field, scenario: Scenario) -> None:
+    def __init__(self, world: Sight, field: Field, scenario: Scenario) -> None:
         self._world = world
         self._field = field
         self._goal = scenario.goal
@@ -52,9 +55,11 @@ class KinematicDriver:
         """Move by one step (Eq. 17); stop at the first thing the disc would touch."""
         now = self.ticks[-1]
         step = decision.step
-        [free] = self._field.free_distance(
-            (now.x, now.y), decision.heading, ROBOT_RADIUS, step
-        ).tolist()
+        free = step
+        if step >= now.clearance - ROUNDING:  # what is farther away cannot stop the robot
+            [free] = self._field.free_distance(
+                (now.x, now.y), decision.heading, ROBOT_RADIUS, step
+            ).tolist()
         hit = free < step
         moved = min(step, free)
         x = now.x + moved * math.cos(decision.heading)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -50,10 +51,13 @@ class LineBundle:
 
     def rays(self, origin: tuple[float, float], headings: Sequence[float]) -> tuple[Floats, Floats]:
         """Return the start and end points of all rays and probes, each of shape (K·14, 3)."""
-        turned = self._local * np.exp(1j * np.array(headings))[:, None]
+        turns = [[complex(math.cos(one), math.sin(one))] for one in headings]
+        turned = self._local * np.array(turns)
         turned += complex(*origin)
-        points = np.full((2, turned[0].size, 3), self._height)
-        points[:, :, :2] = turned.view(np.float64).reshape(2, -1, 2)
+        count = turned.size // 2
+        points = np.empty((2, count, 3))
+        points[:, :, :2] = turned.view(np.float64).reshape(2, count, 2)
+        points[:, :, 2] = self._height
         return points[0], points[1]
 
     def travel(self, fractions: Sequence[float]) -> Floats:
@@ -67,10 +71,14 @@ class LineBundle:
         travels = []
         for first in range(0, len(fractions), rays + 2):
             right, left = fractions[first + rays : first + rays + 2]
+            inner = slice(right < 1.0, rays - (left < 1.0))
+            ended = fractions[first : first + rays][inner]
             least = self.reach
-            for ray in range(right < 1.0, rays - (left < 1.0)):
-                fraction = fractions[first + ray]
-                if fraction < 1.0:  # a free line is exactly as long as the range, not rounded
-                    least = min(least, fraction * self._lengths[ray] - self._rims[ray])
-            travels.append(max(0.0, least))
+            for fraction, length, rim in zip(
+                ended, self._lengths[inner], self._rims[inner], strict=True
+            ):
+                # A free line is exactly as long as the range, not rounded.
+                if fraction < 1.0 and fraction * length - rim < least:
+                    least = fraction * length - rim
+            travels.append(least if least > 0.0 else 0.0)
         return np.array(travels)

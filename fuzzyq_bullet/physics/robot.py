@@ -85,11 +85,10 @@ class Robot:
 
     def state(self) -> RobotState:
         """Return the robot's planar state."""
+        # Arguments by position, here and below: keywords cost as much as some of these calls.
         client = self._engine.client
-        pose = Pose(*self._api.getBasePositionAndOrientation(self.body, physicsClientId=client))
-        (vx, vy, _), (_, _, turn_rate) = self._api.getBaseVelocity(
-            self.body, physicsClientId=client
-        )
+        pose = Pose(*self._api.getBasePositionAndOrientation(self.body, client))
+        (vx, vy, _), (_, _, turn_rate) = self._api.getBaseVelocity(self.body, client)
         heading = pose.yaw
         cos, sin = math.cos(heading), math.sin(heading)
         # PyBullet tells the centre of mass, which lies a little towards the caster.
@@ -103,9 +102,7 @@ class Robot:
 
     def wheel_speeds(self) -> tuple[float, float]:
         """Return the measured speeds of the left and right wheel (rad/s)."""
-        left, right = self._api.getJointStates(
-            self.body, self._wheels, physicsClientId=self._engine.client
-        )
+        left, right = self._api.getJointStates(self.body, self._wheels, self._engine.client)
         return left[1], right[1]
 
 

@@ -7,11 +7,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from fuzzyq_bullet.planning.base import Floats, Observation
+from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.exits import Exit, along, doubtful_exits_of, exits_of
-from fuzzyq_bullet.planning.promise import in_sight, ways_to_goal
+from fuzzyq_bullet.planning.promise import Walls
 from fuzzyq_bullet.planning.view import Point, View, look_around
 
 SPACING = 0.05
@@ -58,8 +56,9 @@ class Places:
 
     def __init__(self) -> None:
         self._places: list[Place] = []
+        self._looked: list[Place] = []  # those of them that have a view
         self._exits: list[Exit] = []
-        self._walls: list[Floats] = []
+        self._walls = Walls()
         self._given_up: list[Point] = []
         self._thorough = False
 
@@ -74,7 +73,8 @@ class Places:
         index = self._add(here)
         place = self._places[index]
         place.view = view = look_around(observation)
-        self._walls.append(view.walls)
+        self._looked.append(place)
+        self._walls.add(view.walls)
         for other, known in enumerate(self._places[:index]):
             if place.sees(known.point):
                 place.ways[other] = known.ways[index] = math.dist(known.point, here)
@@ -97,7 +97,7 @@ class Places:
                     self._remember(doubtful_exits_of(index, place.point, place.view))
         if not self._exits:
             return None
-        ways, before = self._ways()
+        ways, before = self._ways({one.place for one in self._exits})
         chosen = self._cheapest([ways[one.place] + one.way for one in self._exits], goal)
         route, at = [chosen.point], chosen.place
         while at >= 0:
@@ -123,7 +123,7 @@ class Places:
         for found in exits:
             if any(math.dist(point, found.point) <= NEAR for point in self._given_up):
                 continue
-            if not any(_is_known(found, place) for place in self._places):
+            if not any(_is_known(found, place) for place in self._looked):
                 self._exits.append(found)
 
     def _cheapest(self, reach: list[float], goal: Point) -> Exit:
@@ -133,35 +133,38 @@ class Places:
             for way, one in zip(reach, self._exits, strict=True)
         ]
         best = min(range(len(costs)), key=costs.__getitem__)
-        walls = np.concatenate(self._walls)
         # A straight line is the least there is: only where a wall stands on it the walls matter.
-        if not in_sight(self._exits[best].point, goal, walls):
-            for k, around in enumerate(self._ways_on(goal, walls)):
+        if not self._walls.in_sight(self._exits[best].point, goal):
+            for k, around in enumerate(self._ways_on(goal)):
                 costs[k] += min(around - math.dist(self._exits[k].point, goal), ENCLOSED)
             best = min(range(len(costs)), key=costs.__getitem__)
         return self._exits[best]
 
-    def _ways_on(self, goal: Point, walls: Floats) -> list[float]:
+    def _ways_on(self, goal: Point) -> list[float]:
         """Return the least way (m) from each exit to the goal; infinite where there is none."""
         starts, counts = [], []
         for one in self._exits:
             offsets = _INTO if one.beyond is None else _BACK
             starts += [along(one.point, one.heading, max(by, -one.way)) for by in offsets]
             counts.append(len(offsets))
-        found = iter(ways_to_goal(goal, walls, starts))
+        found = iter(self._walls.ways_to_goal(goal, starts))
         ways = [[next(found) for _ in range(count)] for count in counts]
         return [next(filter(math.isfinite, some), math.inf) for some in ways]
 
-    def _ways(self) -> tuple[list[float], list[int]]:
-        """Return the way (m) from the latest place to each, and what comes before it (Dijkstra)."""
+    def _ways(self, wanted: set[int]) -> tuple[list[float], list[int]]:
+        """Return the way (m) from the latest place to others, and what comes before it (Dijkstra).
+
+        Both are true for the wanted places and for those on the ways to them.
+        """
         last = len(self._places) - 1
         ways, before = [math.inf] * (last + 1), [-1] * (last + 1)
         ways[last] = 0.0
         heap = [(0.0, last)]
-        while heap:
+        while heap and wanted:
             way, at = heapq.heappop(heap)
             if way > ways[at]:
                 continue
+            wanted.discard(at)
             for other, further in self._places[at].ways.items():
                 if way + further < ways[other]:
                     ways[other], before[other] = way + further, at

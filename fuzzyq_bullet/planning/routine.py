@@ -49,6 +49,7 @@ class Routine:
     def __init__(self, settings: RoutineSettings) -> None:
         self._settings = settings
         self._controller = paper_controller(rules=settings.rules, samples=settings.samples)
+        self._unhindered: tuple[float, Inference] | None = None
 
     def sense(self, observation: Observation) -> Situation:
         """Cast the three lines and ask the controller (Steps 4–9)."""
@@ -65,10 +66,11 @@ class Routine:
         clear = middle >= min(observation.range, to_goal)
         if clear:
             distance, difference = observation.range / STEP_UNIT, 0.0
+            inferred = self._with_nothing_to_avoid(distance)
         else:
             nearest = middle if settings.distance == "middle" else min(left, middle, right)
             distance, difference = nearest / STEP_UNIT, (left - right) / STEP_UNIT  # Eqs. 13, 14
-        inferred = self._controller.infer(distance, difference)
+            inferred = self._controller.infer(distance, difference)
         return Situation(bearing, to_goal, lines, lengths, distance, difference, clear, inferred)
 
     def step(
@@ -101,3 +103,9 @@ class Routine:
             weights=weights,
             breakout_at=breakout_at,
         )
+
+    def _with_nothing_to_avoid(self, distance: float) -> Inference:
+        """Return what the controller says to this distance and Df = 0; asked once an episode."""
+        if self._unhindered is None or self._unhindered[0] != distance:
+            self._unhindered = (distance, self._controller.infer(distance, 0.0))
+        return self._unhindered[1]
