@@ -12,7 +12,7 @@ from fuzzyq_bullet.experiments.report.markup import Html, join, tag
 from fuzzyq_bullet.experiments.report.parts import blocks, escape, learning, made, steps, success
 from fuzzyq_bullet.experiments.report.parts.blocks import Section
 
-TITLE = "Five planners among unknown obstacles"
+TITLE = "Planners among obstacles they have never seen"
 _POLICY = (
     "default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; "
     "base-uri 'none'; form-action 'none'"
@@ -50,7 +50,7 @@ def page(
             blocks.paragraphs(
                 "The evaluation of “Local Path Planning via Improved Fuzzy and Q(λ)-learning "
                 "Algorithms for the Mobile Robot”, done again by fuzzyq_bullet: how often, how "
-                "fast and how safely each planner crosses fields that it has never seen."
+                "fast and how safely each planner crosses unknown fields."
             ),
             join(*map(blocks.unfinished, evaluation.sweeps)),
             join(*heads),

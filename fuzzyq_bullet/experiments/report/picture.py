@@ -10,10 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from fuzzyq_bullet.experiments.report.measures import MEASURES, by_planner, measures_of
-from fuzzyq_bullet.experiments.success.picture import GRID, INK, beside, looks_of
+from fuzzyq_bullet.experiments.success.picture import GRID, INK, beside, looks_of, ticks_of
 from fuzzyq_bullet.experiments.sweep.rows import Row
 
 
@@ -48,7 +47,7 @@ def picture(rows: Sequence[Row], title: str) -> Figure:
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
     panels[-1].set_xlabel("obstacles", fontsize=11)
-    panels[-1].xaxis.set_major_locator(MaxNLocator("auto", integer=True, min_n_ticks=1))
+    panels[-1].xaxis.set_major_locator(ticks_of(counts))
     figure.legend(
         *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
         frameon=False, handlelength=3.2,

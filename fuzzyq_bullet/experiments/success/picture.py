@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator, PercentFormatter
+from matplotlib.ticker import FixedLocator, Locator, MaxNLocator, PercentFormatter
 
 from fuzzyq_bullet.files import written_beside
 
@@ -55,8 +55,10 @@ _OTHERS = (Look("#222222", "P", "-"), Look("#56B4E9", "X", "--"), Look("#7C828C"
 INK = "#222222"
 GRID = "#D9DCE1"
 _WAY = "#7C828C"
+MOST_TICKS = 8
 _SPREAD = 0.55
-"""Width over which planners stand side by side, as a share of the least gap between counts."""
+"""Width over which planners stand side by side, as a share of the least gap between counts, or of a
+fifth of their range if that is less."""
 
 
 def draw(summary: Summary, title: str, path: Path) -> None:
@@ -98,7 +100,7 @@ def picture(summary: Summary, title: str) -> Figure:
     above.set_title("of all environments", loc="left", fontsize=11, color=INK)
     below.set_title("of the environments that have a way", loc="left", fontsize=11, color=INK)
     below.set_xlabel("obstacles", fontsize=11)
-    below.xaxis.set_major_locator(MaxNLocator("auto", integer=True, min_n_ticks=1))
+    below.xaxis.set_major_locator(ticks_of(counts))
     figure.supylabel("goal reached, with Wilson's 95 % intervals", fontsize=11, color=INK)
     figure.legend(
         *above.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
@@ -113,9 +115,15 @@ def looks_of(planners: Collection[str]) -> list[Look]:
     return [LOOKS.get(name) or next(others) for name in planners]
 
 
+def ticks_of(counts: Counts) -> Locator:
+    """Return where the axis of obstacles is marked: at the counts, where they are not too many."""
+    few = counts.size <= MOST_TICKS
+    return FixedLocator(counts.tolist()) if few else MaxNLocator("auto", integer=True)
+
+
 def beside(counts: Counts, planners: Collection[str]) -> list[float]:
     """Return how far beside a count each planner stands, so that none hides another."""
-    gap = float(np.diff(counts).min()) if counts.size > 1 else 1.0
+    gap = float(min(np.diff(counts).min(), np.ptp(counts) / 5)) if counts.size > 1 else 1.0
     width = 0.5 * _SPREAD * gap
     places: list[float] = np.linspace(-width, width, len(planners)).tolist()
     return places if len(planners) > 1 else [0.0]

@@ -54,12 +54,14 @@ def table(
     ]
     inner = tag(
         "table",
-        tag("caption", caption),
         tag("thead", tag("tr", *(tag("th", one, scope="col") for one in head))),
         tag("tbody", *lines),
         class_="total" if last_apart else None,
+        aria_label=caption,
     )
-    return tag("div", inner, class_="wide", tabindex="0", role="region", aria_label=caption)
+    # Its words stand outside of what scrolls, and are broken where the page ends.
+    wide = tag("div", inner, class_="wide", tabindex="0", role="region", aria_label=caption)
+    return tag("figure", tag("figcaption", caption), wide, class_="table")
 
 
 def picture(contents: bytes, alt: str, caption: Child = None, *, width: int = 720) -> Html:

@@ -231,7 +231,7 @@ def _film(role: str, film: Film) -> Html:
         "video",
         controls=True,
         playsinline=True,
-        preload="none",
+        preload="metadata",
         width=width,
         height=height,
         poster=data_uri("image/jpeg", film.poster),
