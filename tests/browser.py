@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import os
+import select
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -13,6 +14,9 @@ from pathlib import Path
 from typing import Any
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+
+PATIENCE = 40.0
+"""Longest silence of a browser (s)."""
 
 
 class Browser:
@@ -64,7 +68,10 @@ class Browser:
     def value(self, expression: str) -> Any:
         """What an expression comes to, in the page."""
         told = self(
-            "Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True
+            "Runtime.evaluate",
+            expression=expression,
+            returnByValue=True,
+            awaitPromise=True,
         )
         assert "exceptionDetails" not in told, told
         return told["result"].get("value")
@@ -88,6 +95,7 @@ class Browser:
 
     def _hear(self) -> dict[str, Any]:
         while b"\0" not in self._rest:
+            assert select.select([self._read], [], [], PATIENCE)[0], "the browser hangs"
             more = os.read(self._read, 1 << 20)
             assert more, "the browser is gone"
             self._rest += more

@@ -66,8 +66,9 @@ def report(
     for sweep in evaluation.sweeps:
         if not sweep.finished:
             say(f"{sweep.folder}: {len(sweep.rows)} of {sweep.settings.total} episodes so far")
-    other = sum(one.problem is None and not one.same for one in films.values())
+    other = sum(one.other for one in films.values())
     if other:
         say(f"{other} of {len(films)} runs came out otherwise than in their rows: see the page")
-    say(f"{len(films)} films, {len(pictures)} figures, {len(shown) / 1e6:.1f} MB")
+    shot = sum(one.problem is None for one in films.values())
+    say(f"{shot} films, {len(pictures)} figures, {len(shown) / 1e6:.1f} MB")
     typer.echo(target)

@@ -66,9 +66,9 @@ class Film:
     poster: bytes = b""
 
     @property
-    def same(self) -> bool:
-        """Whether this is the run of the row, to the last bit."""
-        return self.digest == self.wanted.row.digest
+    def other(self) -> bool:
+        """Whether it was made, and is not the run of the row to the last bit."""
+        return self.problem is None and self.digest != self.wanted.row.digest
 
 
 def film(wanted: Wanted) -> Film:

@@ -190,7 +190,7 @@ def _measures(rows: Sequence[Row]) -> Html:
 
 def _films(films: Films) -> list[Html]:
     parts = [tag("p", RULE, class_="remark")]
-    different = [film for runs in films.values() for film in runs.values() if not film.same]
+    different = [film for runs in films.values() for film in runs.values() if film.other]
     if different:
         parts.append(
             blocks.warning(
@@ -219,7 +219,7 @@ def _film(role: str, film: Film) -> Html:
         return tag("figure", what, tag("figcaption", name, f": {told}."))
     remark = (
         Html()
-        if film.same
+        if not film.other
         else blocks.warning(
             f"this time it ended otherwise: {film.outcome}. Not the run of the row."
         )
