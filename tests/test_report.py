@@ -38,10 +38,22 @@ PLANNERS = ("fuzzy", "fuzzy-q-lambda")
 
 def row(planner: str, run: int, **more: object) -> Row:
     given = {
-        **{"planner": planner, "drive": "kinematic", "count": 5, "run": run, "seed": run},
-        **{"layout": "scatter", "feasible": True, "outcome": "goal", "steps": 20 + run},
-        **{"time_s": 20.0 + run, "path_length_m": 11.0, "shortest_path_m": 10.0, "spl": 0.9},
-        **{"min_clearance_m": 0.1, "collisions": 0, "digest": "0" * 32},
+        "planner": planner,
+        "drive": "kinematic",
+        "count": 5,
+        "run": run,
+        "seed": run,
+        "layout": "scatter",
+        "feasible": True,
+        "outcome": "goal",
+        "steps": 20 + run,
+        "time_s": 20.0 + run,
+        "path_length_m": 11.0,
+        "shortest_path_m": 10.0,
+        "spl": 0.9,
+        "min_clearance_m": 0.1,
+        "collisions": 0,
+        "digest": "0" * 32,
     }
     return Row.model_validate(given | more)
 
@@ -81,7 +93,7 @@ def _in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
         lambda things, work, pool, hand_out: map(work, things),
     )
     monkeypatch.setattr("fuzzyq_bullet.experiments.report.films.LONGEST", 0.1)
-    monkeypatch.setattr("fuzzyq_bullet.experiments.learning_gain.statistics.RESAMPLES", 50)
+    monkeypatch.setattr("fuzzyq_bullet.experiments.learning_gain.statistics.RESAMPLES", 500)
 
 
 def report(monkeypatch: pytest.MonkeyPatch, *given: object) -> int:
