@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,8 +70,12 @@ class Film:
         return self.problem is None and self.digest != self.wanted.row.digest
 
 
-def film(wanted: Wanted) -> Film:
+def film(wanted: Wanted, folder: Path) -> Film:
     """Make a run again and film it; whatever goes wrong with the run is said in the film's place.
+
+    Args:
+        wanted: The run.
+        folder: For what is needed on the way; removed by whoever made it.
 
     Raises:
         UserError: If no film can be written (ffmpeg, a full disk).
@@ -91,10 +94,9 @@ def film(wanted: Wanted) -> Film:
         return Film(wanted, " ".join(f"{type(error).__name__}: {error}".split()))
     result = result_of(trajectory)
     speed = next((one for one in SPEEDS if result.time_s <= one * LONGEST), SPEEDS[-1])
-    with tempfile.TemporaryDirectory(prefix="fuzzyq-") as folder:
-        path = Path(folder) / "film.mp4"
-        record(trajectory, path, speed=speed, small=True)
-        video = path.read_bytes()
+    path = folder / "film.mp4"
+    record(trajectory, path, speed=speed, small=True)
+    video = path.read_bytes()
     poster = io.BytesIO()
     last = frame(trajectory, result.time_s + 1.0).resize(SIZE, Image.Resampling.BOX)
     last.save(poster, format="JPEG", quality=80)

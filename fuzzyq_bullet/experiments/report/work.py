@@ -12,8 +12,8 @@ from fuzzyq_bullet.experiments.figures import drawing
 from fuzzyq_bullet.experiments.report.films import Film, Wanted, film
 from fuzzyq_bullet.experiments.sweep.workers import Pool, deaths, spread
 
-Task: TypeAlias = "tuple[int, Wanted | int]"
-"""Its place in the list, and a run to be filmed or the number of a figure."""
+Task: TypeAlias = "tuple[int, Wanted | int, Path]"
+"""Its place in the list, a run to be filmed or the number of a figure, and a folder to make."""
 Made: TypeAlias = "Film | bytes"
 
 
@@ -32,21 +32,25 @@ def make(
     """
     pool = Pool(workers)
     made: dict[int, Made] = {}
-    try:
-        for place, one in spread(list(enumerate(things)), _make, pool, lambda task: None):
-            made[place] = one
-            done()
-    except deaths(pool) as error:
-        raise UserError(
-            "a worker process died: killed, out of memory, or crashed in a library; try --jobs 1"
-        ) from error
+    # One folder for all, made here: workers that are ended leave theirs behind.
+    with tempfile.TemporaryDirectory(prefix="fuzzyq-", ignore_cleanup_errors=True) as folder:
+        tasks = [(place, thing, Path(folder) / str(place)) for place, thing in enumerate(things)]
+        try:
+            for place, one in spread(tasks, _make, pool, lambda task: None):
+                made[place] = one
+                done()
+        except deaths(pool) as error:
+            raise UserError(
+                "a worker process died: killed, out of memory, or crashed in a library; "
+                "try --jobs 1"
+            ) from error
     return [made[place] for place in range(len(things))]
 
 
 def _make(task: Task) -> tuple[int, Made]:
-    place, thing = task
+    place, thing, folder = task
+    folder.mkdir()
     if isinstance(thing, Wanted):
-        return place, film(thing)
-    with tempfile.TemporaryDirectory(prefix="fuzzyq-") as folder:
-        path, *_ = drawing(thing)(Path(folder))
-        return place, path.read_bytes()
+        return place, film(thing, folder)
+    path, *_ = drawing(thing)(folder)
+    return place, path.read_bytes()
