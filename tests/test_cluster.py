@@ -13,6 +13,9 @@ from pathlib import Path
 import pytest
 from conftest import Call
 
+from fuzzyq_bullet import UserError
+from fuzzyq_bullet.experiments.sweep.cluster import cluster
+
 pytest.importorskip("distributed", reason="needs the extra cluster")
 
 SWEEP = (
@@ -77,3 +80,11 @@ def test_a_scheduler_that_is_not_there_is_one_line(fuzzyq: Call, tmp_path: Path)
     assert address in line
     assert "no Dask scheduler" in line
     assert not (tmp_path / "out").exists()
+
+
+def test_an_address_of_no_kind_that_there_is_is_told_at_once() -> None:
+    with (
+        pytest.raises(UserError, match="nonsense://x: no Dask scheduler"),
+        cluster("nonsense://x", None),
+    ):
+        pass

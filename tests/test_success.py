@@ -232,6 +232,27 @@ def test_the_command_writes_rows_summary_and_picture(fuzzyq: Call, tmp_path: Pat
     assert (tmp_path / "success.png").stat().st_size > 10_000
 
 
+def test_the_steps_of_all_seven_are_in_the_table_beside_the_papers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(  # in this process: no workers need to start
+        "fuzzyq_bullet.experiments.sweep.workers.spread",
+        lambda jobs, work, pool, hand_out: map(work, jobs),
+    )
+    given = ("--pair", "2,0.5", "--runs", "1", "--count", "5", "--json", "--out", str(tmp_path))
+    monkeypatch.setattr(sys, "argv", ["fuzzyq", "bench", "steps", *given])
+    assert call() == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told == json.loads((tmp_path / "steps.json").read_text())
+    assert [(line["role"], line["paper"]) for line in told["lines"]] == [
+        *((name, PAPER_STEPS[name]) for name in PAPER),
+        *(("fixed 1/1", None), ("best pair 2/0.5", None)),
+    ]
+    assert told["settings"]["search"] is None
+    with (tmp_path / "table" / "steps.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == 7
+
+
 MISTAKES = {
     ("success", "--planners", "fuzy"): ["--planners", "did you mean 'fuzzy'?"],
     ("success", "--planners", ""): ["--planners", "allowed"],

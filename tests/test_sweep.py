@@ -18,6 +18,7 @@ from conftest import FUZZYQ, Call
 from fuzzyq_bullet import Trajectory, UserError, run
 from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.experiments.sweep.episode import Done, run_job
+from fuzzyq_bullet.experiments.sweep.folder import Folder
 from fuzzyq_bullet.experiments.sweep.jobs import Environment, Job
 from fuzzyq_bullet.experiments.sweep.journal import Journal
 from fuzzyq_bullet.experiments.sweep.rows import Row, as_csv
@@ -200,11 +201,15 @@ def test_only_what_is_left_is_run_and_progress_counts_all(tmp_path: Path) -> Non
 
 
 def test_another_setting_is_refused_by_name(tmp_path: Path) -> None:
-    sweep("t", jobs_for(5, 1), tmp_path, {"runs": 1, "seed": 0}, pool=Pool(1), work=quick)
+    settings = {"runs": 1, "seed": 0, "planners": {"a": {"guard": True}, "b": {"guard": True}}}
+    Folder(tmp_path).claim(settings)
+    asked = {"runs": 2, "seed": 0, "planners": {"a": {"guard": False}}}
     with pytest.raises(UserError) as caught:
-        sweep("t", jobs_for(5, 2), tmp_path, {"runs": 2, "seed": 0}, pool=Pool(1), work=quick)
+        Folder(tmp_path).claim(asked)
     (line,) = caught.value.problems
     assert "runs 1, asked for 2" in line
+    assert "planners.a.guard true, asked for false" in line
+    assert "planners.b something, asked for nothing" in line
     assert "seed" not in line
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzyq_bullet.cli import bench, check, explain, figure, replay, run, scenarios, train
+from fuzzyq_bullet.cli import bench, check, explain, figure, replay, report, run, scenarios, train
 from fuzzyq_bullet.cli.words import help_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
@@ -40,6 +40,7 @@ _add("list", scenarios.list_scenarios)
 _add("train", train.train)
 _add("explain", explain.explain, context_settings=explain.CONTEXT_SETTINGS)
 _add("figure", figure.figure)
+_add("report", report.report)
 app.add_typer(bench.app, name="bench")
 
 

@@ -10,6 +10,7 @@ from fuzzyq_bullet.cli.bench_escape import escape
 from fuzzyq_bullet.cli.bench_learning import learning
 from fuzzyq_bullet.cli.bench_steps import steps
 from fuzzyq_bullet.cli.bench_success import success
+from fuzzyq_bullet.cli.sharing import Json
 from fuzzyq_bullet.cli.words import help_of
 
 app = typer.Typer(help="Measure the project itself.", no_args_is_help=True)
@@ -24,7 +25,7 @@ def _bench() -> None:
 def speed(
     *,
     rounds: Annotated[int, typer.Option(min=1, max=100, help="Interleaved rounds.")] = 7,
-    json: Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")] = False,
+    json: Json = False,
 ) -> None:
     """Compare the cost of the loop, the video and the controller with what bounds them.
 

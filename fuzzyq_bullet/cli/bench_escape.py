@@ -8,14 +8,13 @@ from typing import Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.sharing import Jobs, Json, Runs, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
 
 def escape(
     *,
-    runs: Annotated[
-        int, typer.Option(min=1, max=100_000, help="Environments for every count.")
-    ] = 50,
+    runs: Runs = 50,
     counts: Annotated[
         str, typer.Option(help="Numbers of scattered obstacles, or none.")
     ] = "5,25,50,75,100,125",
@@ -29,12 +28,10 @@ def escape(
     weights: Annotated[
         str | None, typer.Option(help="Its weights ω1,ω2; 1,1 where it takes any.")
     ] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the sweep.")] = 0,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, max=4096, help="Worker processes; one a core by default.")
-    ] = None,
+    seed: SweepSeed = 0,
+    jobs: Jobs = None,
     out: Annotated[Path, typer.Option(help="Folder of the sweep.", **FOLDER)] = Path("out/escape"),
-    json: Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")] = False,
+    json: Json = False,
 ) -> None:
     """Run a planner in random fields, traps and rectangles; print how often it finds its way.
 
@@ -46,12 +43,10 @@ def escape(
         UserError: If an option is wrong, or the folder holds a sweep with other settings.
     """
     from fuzzyq_bullet.cli.console import say
-    from fuzzyq_bullet.cli.sweep import counts_of, drives_of, planner_of, sweep_bar
+    from fuzzyq_bullet.cli.sweep import counts_of, drives_of, planner_of, seed_of, sweep_bar
     from fuzzyq_bullet.experiments.escape.plan import Plan
-    from fuzzyq_bullet.experiments.sweep.jobs import MOST_SEED
 
-    if not 0 <= seed <= MOST_SEED:
-        raise UserError(f"--seed: must be from 0 to {MOST_SEED}, got {seed}")
+    seed_of(seed)
     plan = Plan(
         settings=planner_of(planner, weights),
         drives=drives_of(drive),

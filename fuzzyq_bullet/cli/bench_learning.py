@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.sharing import Jobs, Json, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.experiments.learning_gain.plan import Comparison, Search
     from fuzzyq_bullet.experiments.sweep.run import Sweep
-    from fuzzyq_bullet.scenario import Drive
 
 MOST = 10_000
 
@@ -33,14 +33,12 @@ def learning(
         Path | None, typer.Option(metavar="FILE", help="What was learned; else what is shipped.")
     ] = None,
     drive: Annotated[str, typer.Option(help="wheels (physics), or kinematic.")] = "wheels",
-    seed: Annotated[int, typer.Option(help="Seed of the environments to compare on.")] = 0,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, max=4096, help="Worker processes; one a core by default.")
-    ] = None,
+    seed: SweepSeed = 0,
+    jobs: Jobs = None,
     out: Annotated[Path, typer.Option(help="Folder of both sweeps.", **FOLDER)] = Path(
         "out/learning"
     ),
-    json: Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")] = False,
+    json: Json = False,
 ) -> None:
     """Compare learned weights with the best fixed ones, on environments that no training saw.
 
@@ -54,7 +52,7 @@ def learning(
             with other settings.
     """
     from fuzzyq_bullet.cli.console import say
-    from fuzzyq_bullet.cli.sweep import counts_of
+    from fuzzyq_bullet.cli.sweep import counts_of, one_drive_of
     from fuzzyq_bullet.experiments.learning_gain.plan import (
         MOST_SEED,
         Comparison,
@@ -71,7 +69,7 @@ def learning(
     numbers = counts_of(counts, "--counts")
     if not numbers:
         raise UserError("--counts: none leaves nothing to compare on")
-    moved_by = _drive_of(drive)
+    moved_by = one_drive_of(drive)
     settings = learned_settings(policy)
     learned = policy_of(settings, EXPECTED)
 
@@ -144,15 +142,6 @@ def learning(
     if missed:
         say("targets missed: " + "; ".join(missed), style="bold")
         raise typer.Exit(1)
-
-
-def _drive_of(text: str) -> Drive:
-    from fuzzyq_bullet.cli.sweep import drives_of
-
-    drives = drives_of(text)
-    if len(drives) > 1:
-        raise UserError(f"--drive: one at a time here: {', '.join(drives)}")
-    return drives[0]
 
 
 def _swept(name: str, plan: Search | Comparison, out: Path, jobs: int | None) -> Sweep:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.sharing import Backend, Jobs, Json, Scheduler, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -34,16 +35,12 @@ def steps(
     drive: Annotated[
         str, typer.Option(help="wheels (physics), or kinematic (the paper's steps).")
     ] = "kinematic",
-    seed: Annotated[int, typer.Option(help="Seed of the environments.")] = 0,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, max=4096, help="Episodes at a time; one a core by default.")
-    ] = None,
-    backend: Annotated[str, typer.Option(help="loky (this machine), or dask.")] = "loky",
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Of the Dask scheduler.")
-    ] = None,
+    seed: SweepSeed = 0,
+    jobs: Jobs = None,
+    backend: Backend = "loky",
+    scheduler: Scheduler = None,
     out: Annotated[Path, typer.Option(help="Folder of the sweeps.", **FOLDER)] = Path("out/steps"),
-    json: Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")] = False,
+    json: Json = False,
 ) -> None:
     """Print the mean number of steps to the goal beside the paper's, and what failures do to it.
 

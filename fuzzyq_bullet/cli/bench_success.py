@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.sharing import Backend, Jobs, Json, Runs, Scheduler, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
 COUNTS = ",".join(map(str, range(5, 130, 5)))
@@ -21,22 +22,16 @@ def success(
     counts: Annotated[
         str, typer.Option(help="Numbers of scattered obstacles; by default 5, 10, … 125.")
     ] = COUNTS,
-    runs: Annotated[
-        int, typer.Option(min=1, max=100_000, help="Environments for every count.")
-    ] = 50,
+    runs: Runs = 50,
     drive: Annotated[
         str, typer.Option(help="wheels (physics), or kinematic (the paper's point robot).")
     ] = "kinematic",
-    seed: Annotated[int, typer.Option(help="Seed of the sweep.")] = 0,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, max=4096, help="Episodes at a time; one a core by default.")
-    ] = None,
-    backend: Annotated[str, typer.Option(help="loky (this machine), or dask.")] = "loky",
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Of the Dask scheduler.")
-    ] = None,
+    seed: SweepSeed = 0,
+    jobs: Jobs = None,
+    backend: Backend = "loky",
+    scheduler: Scheduler = None,
     out: Annotated[Path, typer.Option(help="Folder of the sweep.", **FOLDER)] = Path("out/success"),
-    json: Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")] = False,
+    json: Json = False,
 ) -> None:
     """Run the planners in the same random fields; print how often each reaches the goal.
 

@@ -1,4 +1,4 @@
-"""The option ``--out``: a folder, which an empty text is not."""
+"""The option ``--out``: a folder or a file, which an empty text is not."""
 
 from __future__ import annotations
 
@@ -15,4 +15,14 @@ def _folder(text: str | Path) -> Path:
 
 
 FOLDER: dict[str, Any] = {"parser": _folder, "metavar": "<path>"}
+"""For ``typer.Option``."""
+
+
+def _file(text: str | Path) -> Path:
+    if not str(text):
+        raise typer.BadParameter("is empty; give a file")
+    return Path(text)
+
+
+FILE: dict[str, Any] = {"parser": _file, "metavar": "<file>"}
 """For ``typer.Option``."""

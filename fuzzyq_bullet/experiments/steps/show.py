@@ -59,7 +59,8 @@ def as_tables(summary: Summary, about: str, limit: int, kinematic: bool) -> Grou
             _number(line.punished),
             _number(line.time),
         )
-    return Group(table, *_orders(summary))
+    told = orders_in_words(summary)
+    return Group(table, *(["", *told] if told else []))
 
 
 def as_json(summary: Summary, settings: Mapping[str, Any], limit: int) -> str:
@@ -67,7 +68,7 @@ def as_json(summary: Summary, settings: Mapping[str, Any], limit: int) -> str:
     return json.dumps({"settings": dict(settings), "m_s": limit, **asdict(summary)}, indent=2)
 
 
-def _orders(summary: Summary) -> list[str]:
+def orders_in_words(summary: Summary) -> list[str]:
     """Name the orders of the paper that are not seen, on the environments that both solved."""
     told = []
     for one in summary.orders:
@@ -78,7 +79,7 @@ def _orders(summary: Summary) -> list[str]:
             )
         elif one.reproduced is None:
             told.append(f"{one.fewer} and {one.more} solved no environment both: no order.")
-    return ["", *told] if told else []
+    return told
 
 
 def _number(value: float | None) -> str:

@@ -6,22 +6,27 @@ dashes differ too, so that it can be read in grey, and planners stand side by si
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator, PercentFormatter
+from matplotlib.ticker import FixedLocator, Locator, MaxNLocator, PercentFormatter
 
 from fuzzyq_bullet.files import written_beside
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from matplotlib.axes import Axes
 
     from fuzzyq_bullet.experiments.success.table import Line, Summary
     from fuzzyq_bullet.experiments.wilson import Share
+
+
+Counts: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.int64]]"
+"""Numbers of obstacles, rising."""
 
 
 class Look(NamedTuple):
@@ -47,11 +52,13 @@ LOOKS = {
 }
 _OTHERS = (Look("#222222", "P", "-"), Look("#56B4E9", "X", "--"), Look("#7C828C", "*", ":"))
 
-_INK = "#222222"
-_GRID = "#D9DCE1"
+INK = "#222222"
+GRID = "#D9DCE1"
 _WAY = "#7C828C"
+MOST_TICKS = 8
 _SPREAD = 0.55
-"""Width over which planners stand side by side, as a share of the least gap between counts."""
+"""Width over which planners stand side by side, as a share of the least gap between counts, or of a
+fifth of their range if that is less."""
 
 
 def draw(summary: Summary, title: str, path: Path) -> None:
@@ -74,7 +81,7 @@ def picture(summary: Summary, title: str) -> Figure:
     """Return the figure: above over all environments, below over those that have a way."""
     figure = Figure(figsize=(11.0, 8.6), dpi=120, layout="constrained")
     FigureCanvasAgg(figure)
-    figure.suptitle(title, fontsize=13, weight="bold", color=_INK)
+    figure.suptitle(title, fontsize=13, weight="bold", color=INK)
     above, below = figure.subplots(2, 1, sharex=True, sharey=True)
     counts = np.array([line.count or 0 for line in summary.lines])
     ways = [line.feasible / line.environments for line in summary.lines]
@@ -86,15 +93,15 @@ def picture(summary: Summary, title: str) -> Figure:
         _planners(axes, summary, counts, feasible)
         axes.set_ylim(-0.02, 1.04)
         axes.yaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
-        axes.grid(axis="y", color=_GRID, lw=0.8)
+        axes.grid(axis="y", color=GRID, lw=0.8)
         axes.set_axisbelow(True)
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
-    above.set_title("of all environments", loc="left", fontsize=11, color=_INK)
-    below.set_title("of the environments that have a way", loc="left", fontsize=11, color=_INK)
+    above.set_title("of all environments", loc="left", fontsize=11, color=INK)
+    below.set_title("of the environments that have a way", loc="left", fontsize=11, color=INK)
     below.set_xlabel("obstacles", fontsize=11)
-    below.xaxis.set_major_locator(MaxNLocator("auto", integer=True, min_n_ticks=1))
-    figure.supylabel("goal reached, with Wilson's 95 % intervals", fontsize=11, color=_INK)
+    below.xaxis.set_major_locator(ticks_of(counts))
+    figure.supylabel("goal reached, with Wilson's 95 % intervals", fontsize=11, color=INK)
     figure.legend(
         *above.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
         frameon=False, handlelength=3.2,
@@ -102,18 +109,32 @@ def picture(summary: Summary, title: str) -> Figure:
     return figure
 
 
-def _planners(
-    axes: Axes, summary: Summary, counts: np.ndarray[tuple[int, ...], np.dtype[np.int64]],
-    feasible: bool,
-) -> None:  # fmt: skip
+def looks_of(planners: Collection[str]) -> list[Look]:
+    """Return how each planner is drawn; those that the paper does not have take turns."""
+    others = iter(_OTHERS * len(planners))
+    return [LOOKS.get(name) or next(others) for name in planners]
+
+
+def ticks_of(counts: Counts) -> Locator:
+    """Return where the axis of obstacles is marked: at the counts, where they are not too many."""
+    few = counts.size <= MOST_TICKS
+    return FixedLocator(counts.tolist()) if few else MaxNLocator("auto", integer=True)
+
+
+def beside(counts: Counts, planners: Collection[str]) -> list[float]:
+    """Return how far beside a count each planner stands, so that none hides another."""
+    gap = float(min(np.diff(counts).min(), np.ptp(counts) / 5)) if counts.size > 1 else 1.0
+    width = 0.5 * _SPREAD * gap
+    places: list[float] = np.linspace(-width, width, len(planners)).tolist()
+    return places if len(planners) > 1 else [0.0]
+
+
+def _planners(axes: Axes, summary: Summary, counts: Counts, feasible: bool) -> None:
     """Draw a line for each planner, each a little beside the others."""
-    gap = float(np.diff(counts).min()) if counts.size > 1 else 1.0
-    beside = np.linspace(-0.5, 0.5, len(summary.planners)) if len(summary.planners) > 1 else [0.0]
-    others = iter(_OTHERS * len(summary.planners))
-    for name, offset in zip(summary.planners, beside, strict=True):
-        look = LOOKS.get(name) or next(others)
+    looks, offsets = looks_of(summary.planners), beside(counts, summary.planners)
+    for name, look, offset in zip(summary.planners, looks, offsets, strict=True):
         found = [
-            (count + _SPREAD * gap * offset, one)
+            (count + offset, one)
             for count, line in zip(counts, summary.lines, strict=True)
             if (one := _share(line, name, feasible)) is not None
         ]

@@ -76,6 +76,8 @@ def cluster(address: str, jobs: int | None) -> Iterator[Pool]:
         from concurrent.futures import CancelledError
 
         from distributed import Client
+        from distributed.comm.addressing import parse_address
+        from distributed.comm.registry import get_backend
         from distributed.scheduler import KilledWorker
     except ImportError as error:
         raise UserError(
@@ -84,6 +86,7 @@ def cluster(address: str, jobs: int | None) -> Iterator[Pool]:
     # What befalls it is told by the errors below, in one line.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     try:
+        get_backend(parse_address(address)[0])  # else a client that never was complains at its end
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise UserError(

@@ -84,15 +84,19 @@ class Folder:
         return known
 
 
-def _differences(before: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
-    """Say which settings differ, in the order in which they are asked for."""
-    keys = [*wanted, *(key for key in before if key not in wanted)]
-    return [
-        f"{key} {_shown(before.get(key, _ABSENT))}, asked for {_shown(wanted.get(key, _ABSENT))}"
-        for key in keys
-        if before.get(key, _ABSENT) != wanted.get(key, _ABSENT)
-    ]
+def _differences(before: Mapping[str, Any], wanted: Mapping[str, Any], at: str = "") -> list[str]:
+    """Say which settings differ, in the order in which they are asked for; inner ones by a dot."""
+    told = []
+    for key in [*wanted, *(key for key in before if key not in wanted)]:
+        old, new = before.get(key, _ABSENT), wanted.get(key, _ABSENT)
+        if isinstance(old, Mapping) and isinstance(new, Mapping):
+            told += _differences(old, new, f"{at}{key}.")
+        elif old != new:
+            told.append(f"{at}{key} {_shown(old)}, asked for {_shown(new)}")
+    return told
 
 
 def _shown(value: Any) -> str:
+    if isinstance(value, Mapping):  # all that is in it would hide what differs
+        return "something"
     return value if isinstance(value, str) else json.dumps(value)

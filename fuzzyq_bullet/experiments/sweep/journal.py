@@ -14,6 +14,19 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.sweep.rows import Row
 
 
+def rows_in(path: Path) -> list[Row]:
+    """Return the rows of a journal, which may be at work or torn, and stays as it is.
+
+    Raises:
+        UserError: If it cannot be read.
+    """
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {error.strerror or error}") from error
+    return _rows(text[: text.rfind(b"\n") + 1])
+
+
 class Journal:
     """A file of rows, one a line, that one process at a time may append to.
 
@@ -49,9 +62,7 @@ class Journal:
         except UserError:
             self._close()
             raise
-        for line in whole.splitlines():
-            with suppress(ValidationError):
-                self.rows.append(Row.model_validate_json(line))
+        self.rows = _rows(whole)
         return self
 
     def append(self, row: Row) -> None:
@@ -93,3 +104,11 @@ class Journal:
 
     def _problem(self, error: OSError) -> UserError:
         return UserError(f"{self._path}: cannot be written: {error.strerror or error}")
+
+
+def _rows(text: bytes) -> list[Row]:
+    rows = []
+    for line in text.splitlines():
+        with suppress(ValidationError):
+            rows.append(Row.model_validate_json(line))
+    return rows

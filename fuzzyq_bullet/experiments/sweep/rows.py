@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from fuzzyq_bullet.experiments.sweep.jobs import Job, Key
 from fuzzyq_bullet.metrics import Result
@@ -113,6 +113,35 @@ def as_csv(rows: Iterable[Row]) -> str:
     for row in sorted(rows, key=lambda one: one.key):
         writer.writerow([_cell(value) for _, value in row])
     return text.getvalue()
+
+
+def from_csv(text: str) -> list[Row]:
+    """Return the rows of a CSV as ``as_csv`` writes it.
+
+    Raises:
+        ValueError: If it is none; says in which line, and what is wrong there.
+    """
+    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+    names = list(Row.model_fields)
+    rows: dict[Key, Row] = {}
+    try:
+        if next(reader, None) != names:
+            raise ValueError(f"must have the columns {','.join(names)}")
+        for cells in reader:
+            if len(cells) != len(names):
+                raise ValueError(f"{len(cells)} columns instead of {len(names)}")
+            given = {name: cell or None for name, cell in zip(names, cells, strict=True)}
+            row = Row.model_validate(given)
+            if row.key in rows:
+                raise ValueError("an episode that another line has already")
+            rows[row.key] = row
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise ValueError(f"line {reader.line_num}: {where}: {first['msg']}") from error
+    except (ValueError, csv.Error) as error:
+        raise ValueError(f"line {max(reader.line_num, 1)}: {error}") from error
+    return list(rows.values())
 
 
 def _cell(value: object) -> str:

@@ -7,16 +7,19 @@ import signal
 import threading
 import time
 import warnings
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from fuzzyq_bullet.experiments.sweep.episode import Done
 from fuzzyq_bullet.experiments.sweep.jobs import Job
 from fuzzyq_bullet.experiments.sweep.rows import Row
 
 Work: TypeAlias = Callable[[Job], Done]
+
+T = TypeVar("T")
+R = TypeVar("R")
 
 KILLED = "its worker process died twice: killed, out of memory, or crashed in a library"
 
@@ -54,11 +57,11 @@ def finished(jobs: Sequence[Job], work: Work, pool: Pool) -> Generator[Done, Non
     while waiting:
         begun: dict[Any, Job] = {}
         try:
-            for done in _parallel(list(waiting.values()), work, pool, begun):
+            for done in _noted(list(waiting.values()), work, pool, begun):
                 del waiting[done.row.key]
                 begun.pop(done.row.key, None)
                 yield done
-        except _deaths(pool):
+        except deaths(pool):
             for job in list(begun.values()):
                 del waiting[job.key]
                 yield _alone(job, work, pool)
@@ -66,22 +69,40 @@ def finished(jobs: Sequence[Job], work: Work, pool: Pool) -> Generator[Done, Non
 
 def _alone(job: Job, work: Work, pool: Pool) -> Done:
     try:
-        (done,) = _parallel([job], work, pool, {})
-    except _deaths(pool):
+        (done,) = _noted([job], work, pool, {})
+    except deaths(pool):
         return Done(Row.failed(job, KILLED))
     return done
 
 
-def _parallel(jobs: Sequence[Job], work: Work, pool: Pool, begun: dict[Any, Job]) -> Iterator[Done]:
-    """Do jobs through joblib, noting in ``begun`` which have been handed out."""
+def _noted(jobs: Sequence[Job], work: Work, pool: Pool, begun: dict[Any, Job]) -> Iterator[Done]:
+    """Do jobs, noting in ``begun`` which have been handed out."""
+
+    def note(job: Job) -> None:
+        begun[job.key] = job
+
+    return spread(jobs, work, pool, note)
+
+
+def spread(
+    things: Iterable[T], work: Callable[[T], R], pool: Pool, hand_out: Callable[[T], None]
+) -> Generator[R, None, None]:
+    """Do work through joblib; yield each result as it comes, in any order.
+
+    Args:
+        things: What is to be done.
+        work: Does one; runs in a worker.
+        pool: Who does it.
+        hand_out: Called with each before it is handed out.
+    """
     import joblib
 
     workers = pool.workers or joblib.cpu_count()
 
     def handed_out() -> Iterator[Any]:
-        for job in jobs:
-            begun[job.key] = job
-            yield joblib.delayed(work)(job)
+        for thing in things:
+            hand_out(thing)
+            yield joblib.delayed(work)(thing)
 
     # joblib would do the work of a single worker in this process, which it may then bring down. So
     # it always has room for two, but is handed one job at a time.
@@ -95,8 +116,8 @@ def _parallel(jobs: Sequence[Job], work: Work, pool: Pool, begun: dict[Any, Job]
         try:
             with _deaf_to_ctrl_c() if pool.backend == "loky" else nullcontext():
                 results = parallel(handed_out())
-            for done in results:  # noqa: UP028 ("yield from" would close it before "finally" does)
-                yield done
+            for result in results:  # noqa: UP028 ("yield from" would close it before "finally")
+                yield result
         finally:
             with warnings.catch_warnings():  # that not all was waited for is known here
                 warnings.simplefilter("ignore")
@@ -104,7 +125,8 @@ def _parallel(jobs: Sequence[Job], work: Work, pool: Pool, begun: dict[Any, Job]
                     results.close()
 
 
-def _deaths(pool: Pool) -> tuple[type[BaseException], ...]:
+def deaths(pool: Pool) -> tuple[type[BaseException], ...]:
+    """Return what ``spread`` raises when a worker dies."""
     if pool.deaths is not None:
         return pool.deaths
     from joblib.externals.loky.process_executor import BrokenProcessPool

@@ -1,0 +1,1 @@
+"""All sweeps of a folder as one page that people look at (``fuzzyq report``)."""
