@@ -333,7 +333,7 @@ def test_arrays_that_no_run_leaves_are_refused(words: str, filmed: Path, tmp_pat
 
 
 HEADS: dict[str, tuple[dict[str, Any], list[str]]] = {
-    "format": ({"format": 99}, ["format 99", "reads 1"]),
+    "format": ({"format": 99}, ["format 99", "reads 2"]),
     "outcome": ({"outcome": "victory"}, ["outcome"]),
     "steps": ({"physics_steps": -1}, ["physics_steps"]),
     "collision": ({"collision": {"time": 1.0}}, ["collision"]),
@@ -363,7 +363,7 @@ def test_a_scenario_inside_a_record_is_held_to_the_same_rules(filmed: Path, tmp_
     arrays = arrays_of(filmed / "short.npz")
     for spoil, word in (
         (lambda s: s["goal"].update(position=[float("nan"), 0.0]), "goal.position"),
-        (lambda s: s["planner"].update(name="nobody"), "planner"),
+        (lambda s: s["planner"].update(name=7), "planner"),
         (lambda s: s["obstacles"].append({"shape": "cone"}), "obstacles"),
         (lambda s: s.update(name="../../etc/passwd"), "name"),
     ):
