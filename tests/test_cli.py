@@ -240,10 +240,13 @@ def test_help_and_mistakes_load_neither_the_physics_nor_the_plots(tmp_path: Path
         assert done.stderr.splitlines()[-1] == "[]"
 
 
-def test_numpy_is_not_loaded_for_help() -> None:
-    code = "import sys, fuzzyq_bullet.cli.app; print('numpy' in sys.modules)"
+def test_numpy_is_not_loaded_for_help_nor_scipy_to_know_what_a_scenario_is() -> None:
+    code = (
+        "import sys, fuzzyq_bullet.cli.app; print('numpy' in sys.modules)\n"
+        "import fuzzyq_bullet.scenario; print('scipy' in sys.modules)"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.stdout == "False\n"
+    assert done.stdout == "False\nFalse\n"
 
 
 def test_an_output_that_nobody_reads_to_its_end_changes_nothing(
