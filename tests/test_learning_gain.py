@@ -461,7 +461,9 @@ def test_it_runs_goes_on_and_says_what_it_found(
         journal.write_bytes(b"".join(journal.read_bytes().splitlines(keepends=True)[:-2]))
     again = fuzzyq(*command)
     assert again.returncode == first.returncode
-    assert [line.split(" in ")[0] for line in again.stderr.splitlines() if "episodes/s" in line] == [
+    assert [
+        line.split(" in ")[0] for line in again.stderr.splitlines() if "episodes/s" in line
+    ] == [
         "grid: 2 episodes",
         "comparison: 2 episodes",
     ]
