@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,6 +11,8 @@ from pathlib import Path
 from typing import TypeAlias
 
 import pytest
+
+from fuzzyq_bullet.cli import app
 
 FUZZYQ = Path(sys.executable).with_name("fuzzyq")
 
@@ -35,6 +39,26 @@ def fuzzyq() -> Call:
         return subprocess.run(  # type: ignore[call-overload, no-any-return]
             [FUZZYQ, *map(str, args)], cwd=cwd, capture_output=True, text=True, timeout=120, **more
         )
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def inside() -> Call:
+    """The same command in this process, a second cheaper; a mistake is raised as it is."""
+
+    def call(*args: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        out, err = io.StringIO(), io.StringIO()
+        with (
+            pytest.MonkeyPatch.context() as patch,
+            contextlib.redirect_stdout(out),
+            contextlib.redirect_stderr(err),
+        ):
+            patch.setattr(sys, "argv", ["fuzzyq", *map(str, args)])
+            if cwd is not None:
+                patch.chdir(cwd)
+            status = app.call()
+        return subprocess.CompletedProcess(args, status, out.getvalue(), err.getvalue())
 
     return call
 

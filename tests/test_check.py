@@ -373,10 +373,10 @@ def test_a_record_that_cannot_be_read_is_a_mistake_and_the_scenario_runs(
 
 
 def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
-    fuzzyq: Call, folder: Path, tmp_path: Path
+    inside: Call, folder: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "good.yaml").write_text(gate("good"))
-    done = fuzzyq("check", ".", "--record", "--repeat", "2", cwd=tmp_path)
+    done = inside("check", ".", "--record", "--repeat", "2", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert [line.split()[1] for line in done.stdout.splitlines()] == ["good-seed-0", "good-seed-1"]
     record = tmp_path / "check-record.json"
@@ -386,12 +386,12 @@ def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
     figures["time_s"] /= 1.12
     figures["min_clearance_m"] += 0.03
     record.write_text(json.dumps(runs))
-    done = fuzzyq("check", ".", "--strict", cwd=tmp_path)
+    done = inside("check", ".", "--strict", cwd=tmp_path)
     assert done.returncode == 1
     assert "changed: time +12 %: " in done.stdout
     assert "changed: clearance −3.0 cm: " in done.stdout
     assert "FAIL  good  goal" in done.stdout
-    done = fuzzyq("check", ".", cwd=tmp_path)
+    done = inside("check", ".", cwd=tmp_path)
     assert done.returncode == 0
     assert "changed: time +12 %: " in done.stdout
     assert "1 passed, 1 changed in" in done.stderr

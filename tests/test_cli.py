@@ -76,9 +76,9 @@ def test_the_same_scenario_planner_and_seed_give_the_same_digest_in_another_proc
 
 
 def test_a_replay_makes_the_same_video_to_the_byte(
-    fuzzyq: Call, filmed: Path, tmp_path: Path
+    inside: Call, filmed: Path, tmp_path: Path
 ) -> None:
-    done = fuzzyq("replay", filmed / "short.npz", "--out", tmp_path)
+    done = inside("replay", filmed / "short.npz", "--out", tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout == f"{tmp_path / 'short.mp4'}\n"
     assert (tmp_path / "short.mp4").read_bytes() == (filmed / "short.mp4").read_bytes()
@@ -94,24 +94,24 @@ def test_a_replay_lies_beside_its_record_and_may_be_quicker(
 
 
 def test_a_film_at_another_speed_replaces_none(
-    fuzzyq: Call, short: Path, filmed: Path, tmp_path: Path
+    inside: Call, short: Path, filmed: Path, tmp_path: Path
 ) -> None:
     shutil.copy(filmed / "short.npz", tmp_path)
     (tmp_path / "short.mp4").write_bytes(b"the film in real time")
     for args in (("replay", tmp_path / "short.npz"), ("run", short, "--out", tmp_path)):
-        assert fuzzyq(*args, "--speed", "20").returncode == 0
+        assert inside(*args, "--speed", "20").returncode == 0
         assert (tmp_path / "short.mp4").read_bytes() == b"the film in real time"
         assert (tmp_path / "short-20x.mp4").read_bytes()[4:8] == b"ftyp"
         (tmp_path / "short-20x.mp4").unlink()
 
 
 def test_a_film_of_an_earlier_run_is_kept_and_said_to_be_that(
-    fuzzyq: Call, short: Path, tmp_path: Path
+    inside: Call, short: Path, tmp_path: Path
 ) -> None:
     older = [tmp_path / name for name in ("short-4x.mp4", "short.mp4")]
     for path in (*older, tmp_path / "shorter.mp4", tmp_path / "short-cut.mp4"):
         path.write_bytes(b"an older one")
-    done = fuzzyq("run", short, "--no-video", "--out", tmp_path)
+    done = inside("run", short, "--no-video", "--out", tmp_path)
     said = [line for line in done.stderr.splitlines() if "of an earlier run" in line]
     assert said == [f"{path} is of an earlier run" for path in older]
     assert all(path.read_bytes() == b"an older one" for path in older)
@@ -131,10 +131,10 @@ obstacles:
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 def test_a_collision_says_what_was_touched_where_and_when(
-    drive: str, fuzzyq: Call, tmp_path: Path
+    drive: str, inside: Call, tmp_path: Path
 ) -> None:
     (tmp_path / "crash.yaml").write_text(CRASH)
-    done = fuzzyq("run", "crash.yaml", "--drive", drive, "--no-video", cwd=tmp_path)
+    done = inside("run", "crash.yaml", "--drive", drive, "--no-video", cwd=tmp_path)
     assert done.returncode == 1
     summary, contact, *_ = done.stderr.splitlines()
     assert "least clearance 0.000 m" in summary
@@ -158,20 +158,20 @@ def test_what_was_touched_is_named(obstacle: int, listed: int, what: str, filmed
 
 
 def test_options_take_the_place_of_what_the_scenario_says(
-    fuzzyq: Call, short: Path, tmp_path: Path
+    inside: Call, short: Path, tmp_path: Path
 ) -> None:
     options = ("--planner", "fuzzy", "--seed", "7", "--drive", "kinematic")
-    done = fuzzyq("run", short, *options, "--out", tmp_path, "--no-video", "--json")
+    done = inside("run", short, *options, "--out", tmp_path, "--no-video", "--json")
     result = json.loads(done.stdout)
     assert (result["planner"], result["seed"], result["drive"]) == ("fuzzy", 7, "kinematic")
 
 
 def test_a_missed_expectation_is_exit_code_1_with_everything_written(
-    fuzzyq: Call, short: Path, tmp_path: Path
+    inside: Call, short: Path, tmp_path: Path
 ) -> None:
     hasty = tmp_path / "hasty.yaml"
     hasty.write_text(short.read_text() + "expect: {max_time: 0.5}\nlimits: {time: 1.0}\n")
-    done = fuzzyq("run", hasty, "--out", tmp_path, "--no-video", "--json")
+    done = inside("run", hasty, "--out", tmp_path, "--no-video", "--json")
     assert done.returncode == 1
     assert json.loads(done.stdout)["outcome"] == "timeout"
     misses = [line for line in done.stderr.splitlines() if line.startswith("not as expected: ")]
@@ -207,8 +207,8 @@ def test_schema_is_one_that_the_bundled_scenarios_fulfil(fuzzyq: Call) -> None:
         jsonschema.validate(yaml.safe_load(path.read_text()), schema)
 
 
-def test_list_names_every_bundled_scenario(fuzzyq: Call) -> None:
-    table, data = fuzzyq("list"), json.loads(fuzzyq("list", "--json").stdout)
+def test_list_names_every_bundled_scenario(inside: Call) -> None:
+    table, data = inside("list"), json.loads(inside("list", "--json").stdout)
     assert [line.split()[0] for line in table.stdout.splitlines()] == list(data)
     assert {"boxes", "mixed"} <= set(data)
 
@@ -240,10 +240,13 @@ def test_help_and_mistakes_load_neither_the_physics_nor_the_plots(tmp_path: Path
         assert done.stderr.splitlines()[-1] == "[]"
 
 
-def test_numpy_is_not_loaded_for_help() -> None:
-    code = "import sys, fuzzyq_bullet.cli.app; print('numpy' in sys.modules)"
+def test_numpy_is_not_loaded_for_help_nor_scipy_to_know_what_a_scenario_is() -> None:
+    code = (
+        "import sys, fuzzyq_bullet.cli.app; print('numpy' in sys.modules)\n"
+        "import fuzzyq_bullet.scenario; print('scipy' in sys.modules)"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.stdout == "False\n"
+    assert done.stdout == "False\nFalse\n"
 
 
 def test_an_output_that_nobody_reads_to_its_end_changes_nothing(

@@ -254,7 +254,7 @@ def scenario_in(folder: Path, policy: str) -> Path:
 
 
 def test_a_policy_is_found_from_its_scenarios_folder_and_no_path_is_in_the_trajectory(
-    whole: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fuzzyq: Call
+    whole: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inside: Call
 ) -> None:
     digests = []
     for name in ("one", "other"):
@@ -271,7 +271,7 @@ def test_a_policy_is_found_from_its_scenarios_folder_and_no_path_is_in_the_traje
         assert parse_scenario(dump_scenario(scenario)) == scenario
     assert digests[0] == digests[1]
     assert digests[0] != run(with_options(scenario, planner="improved-fuzzy")).digest()
-    done = fuzzyq("run", "one/learned.yaml", "--no-video", "--json", cwd=tmp_path)
+    done = inside("run", "one/learned.yaml", "--no-video", "--json", cwd=tmp_path)
     assert json.loads(done.stdout)["digest"] == digests[0], done.stderr
     (tmp_path / "one" / "learned" / "mine.json").unlink()
     # A record needs no policy any more.

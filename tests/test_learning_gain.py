@@ -428,17 +428,18 @@ def test_another_training_makes_another_comparison(policy: tuple[Policy, Path]) 
 
 
 def test_it_runs_goes_on_and_says_what_it_found(
-    fuzzyq: Call,
-    policy: tuple[Policy, Path],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    fuzzyq: Call, inside: Call, policy: tuple[Policy, Path], tmp_path: Path
 ) -> None:
     command = (
         *("bench", "learning", "--policy", policy[1], "--drive", "kinematic", "--environments", 4),
         *("--counts", "5,10", "--grid", 1, "--jobs", 2, "--out", tmp_path),
     )
-    first = fuzzyq(*command, "--json")
+    with pytest.MonkeyPatch.context() as patch:  # in this process: no workers need to start
+        patch.setattr(
+            "fuzzyq_bullet.experiments.sweep.workers.spread",
+            lambda jobs, work, pool, hand_out: map(work, jobs),
+        )
+        first = inside(*command, "--json")
     assert first.returncode in (0, 1), first.stderr
     told = json.loads(first.stdout)
     assert told == json.loads((tmp_path / "learning.json").read_text())
@@ -458,15 +459,16 @@ def test_it_runs_goes_on_and_says_what_it_found(
     for name in ("grid", "comparison"):  # what is lost is run again, and nothing else
         journal = tmp_path / name / "journal.jsonl"
         journal.write_bytes(b"".join(journal.read_bytes().splitlines(keepends=True)[:-2]))
-    monkeypatch.setattr(sys, "argv", ["fuzzyq", *map(str, command)])
-    assert call() == first.returncode
-    again = capsys.readouterr()
-    assert [line.split(" in ")[0] for line in again.err.splitlines() if "episodes/s" in line] == [
+    again = fuzzyq(*command)
+    assert again.returncode == first.returncode
+    assert [
+        line.split(" in ")[0] for line in again.stderr.splitlines() if "episodes/s" in line
+    ] == [
         "grid: 2 episodes",
         "comparison: 2 episodes",
     ]
     assert [path.read_bytes() for path in files] == before
-    assert max(map(len, again.out.splitlines())) <= WIDTH
+    assert max(map(len, again.stdout.splitlines())) <= WIDTH
 
 
 def test_the_tables_cut_nothing_off() -> None:

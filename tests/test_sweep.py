@@ -237,10 +237,15 @@ ROWS = 8
 
 
 @pytest.fixture(scope="module")
-def undisturbed(fuzzyq: Call, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A sweep that nobody disturbed, by one worker, and what it printed."""
+def undisturbed(inside: Call, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A sweep that nobody disturbed, one job after the other here, and what it printed."""
     folder = tmp_path_factory.mktemp("sweep")
-    done = fuzzyq(*ESCAPE, "--jobs", "1", "--out", folder, "--json")
+    with pytest.MonkeyPatch.context() as patch:  # no workers need to start
+        patch.setattr(
+            "fuzzyq_bullet.experiments.sweep.workers.spread",
+            lambda jobs, work, pool, hand_out: map(work, jobs),
+        )
+        done = inside(*ESCAPE, "--out", folder, "--json")
     assert done.returncode in (0, 1), done.stderr
     (folder / "stdout").write_text(done.stdout)
     return folder
@@ -294,10 +299,10 @@ def test_ctrl_c_ends_a_sweep_in_good_order(moment: str, tmp_path: Path) -> None:
 
 
 def test_json_is_alone_on_stdout_and_a_finished_sweep_is_only_read_again(
-    undisturbed: Path, fuzzyq: Call
+    undisturbed: Path, inside: Call
 ) -> None:
     first = json.loads((undisturbed / "stdout").read_text())
-    done = fuzzyq(*ESCAPE, "--out", undisturbed, "--json")
+    done = inside(*ESCAPE, "--out", undisturbed, "--json")
     again = json.loads(done.stdout)
     assert "0 episodes" in done.stderr
     assert again["rows"] == first["rows"]
@@ -310,21 +315,21 @@ def test_json_is_alone_on_stdout_and_a_finished_sweep_is_only_read_again(
 
 
 def test_the_table_fits_a_terminal_and_says_with_what_it_was_made(
-    undisturbed: Path, fuzzyq: Call
+    undisturbed: Path, inside: Call
 ) -> None:
-    shown = fuzzyq(*ESCAPE, "--out", undisturbed).stdout
+    shown = inside(*ESCAPE, "--out", undisturbed).stdout
     assert max(map(len, shown.splitlines())) <= 80
     assert "improved-fuzzy with weights (1, 1); seed 3" in shown
     assert "scatter 25" in shown
 
 
 def test_the_folder_of_another_sweep_is_refused_and_stays_as_it_is(
-    undisturbed: Path, fuzzyq: Call
+    undisturbed: Path, inside: Call
 ) -> None:
     before = {path: path.read_bytes() for path in undisturbed.iterdir() if path.is_file()}
-    done = fuzzyq(*ESCAPE, "--out", undisturbed, "--weights", "0.5,1", "--runs", "7")
-    assert done.returncode == 2
-    (line,) = done.stderr.splitlines()
+    with pytest.raises(UserError) as caught:
+        inside(*ESCAPE, "--out", undisturbed, "--weights", "0.5,1", "--runs", "7")
+    (line,) = caught.value.problems
     assert all(word in line for word in (str(undisturbed), "runs 3, asked for 7", "weights"))
     assert {path: path.read_bytes() for path in before} == before
 

@@ -9,14 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
 
 from fuzzyq_bullet.planning.base import Floats
 from fuzzyq_bullet.planning.view import Point
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 CELL = 0.1
 """Side of a cell (m); doubled until the grid has no more than ``MOST`` cells."""
@@ -67,6 +69,9 @@ class Walls:
     """
 
     def __init__(self, seen: Floats | None = None) -> None:
+        # Loaded here: not by whoever only reads a scenario, and not while the robot drives.
+        import scipy.sparse.csgraph  # noqa: F401
+
         self._ends = np.zeros((4, 0))  # rows: x and y of one end, x and y of the other
         self._low, self._high = (math.inf, math.inf), (-math.inf, -math.inf)
         # Walls are only ever added: what they block of a grid is kept for the next question.
@@ -106,6 +111,8 @@ class Walls:
 
         Infinite where the known walls leave none, as far as the grid can tell.
         """
+        from scipy.sparse.csgraph import dijkstra
+
         points = (*starts, goal)
         grid = _Grid.over(_least(self._low, *points), _greatest(self._high, *points))
         free = self._left_free(grid)
@@ -136,6 +143,8 @@ def _greatest(*points: Sequence[float]) -> Point:
 
 def _moves(free: NDArray[np.bool_], cell: float) -> csr_matrix:
     """Return the graph of moves between free cells; none slips through between two blocked ones."""
+    from scipy.sparse import csr_matrix
+
     columns, rows = free.shape
     can = np.zeros((columns, rows, 2 * len(_MOVES)), dtype=bool)
     steps, lengths = [], []

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import label
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.scenario.shapes import ROBOT_RADIUS, TOUCH, Box, Obstacle
@@ -64,6 +63,8 @@ def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
     Looks on a grid and is careful: what it finds is a way, but it may miss one that is hardly
     wider than the robot.
     """
+    from scipy.ndimage import label  # only who draws obstacles waits for it to load
+
     width, depth = scenario.arena.size
     outside = 0.0 if scenario.arena.walls else _OUTSIDE
     step = max(_STEP, math.sqrt((width + 2 * outside) * (depth + 2 * outside) / _MOST_PLACES))

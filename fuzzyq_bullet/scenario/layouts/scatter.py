@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field as Given
-from scipy.spatial import KDTree
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
@@ -137,6 +136,8 @@ def _free_of_one_another(drawn: Floats, places: Floats, wanted: Random) -> Float
     """Return those of ``drawn`` that overlap neither ``places`` nor an earlier one of them."""
     if wanted.overlap or not len(drawn):
         return drawn
+    from scipy.spatial import KDTree  # only who draws obstacles waits for it to load
+
     if len(places):
         nearest, _ = KDTree(places).query(drawn)
         drawn = drawn[nearest >= 2 * wanted.radius]
