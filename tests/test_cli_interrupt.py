@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import sys
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -158,3 +159,24 @@ def encoders_of(folder: Path) -> list[str]:
         with suppress(OSError):  # it has ended meanwhile
             commands.append((entry / "cmdline").read_bytes().replace(b"\0", b" ").decode())
     return [command for command in commands if str(folder) in command]
+
+
+def test_while_a_destructor_runs_that_lets_nothing_through() -> None:
+    code = """
+import os, signal, time
+from fuzzyq_bullet.cli.process import guard
+
+class Deaf:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+
+def command():
+    deaf = Deaf()
+    del deaf
+    time.sleep(5)
+    return 0
+
+guard(command)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "error: interrupted\n")

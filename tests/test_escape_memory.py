@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csgraph
 
 from fuzzyq_bullet.geometry import Field, wrap_angle
 from fuzzyq_bullet.oracle import feasible
@@ -340,8 +341,8 @@ def test_however_large_the_world_the_grid_stays_small(size, monkeypatch):
         sizes.append(graph.shape[0])
         return dijkstra(graph, **rest)
 
-    dijkstra = promise.dijkstra
-    monkeypatch.setattr(promise, "dijkstra", counting)
+    dijkstra = csgraph.dijkstra
+    monkeypatch.setattr(csgraph, "dijkstra", counting)
     walls = Walls(pieces(square(0.4, (size / 2, 0.0)), 40))
     [way] = walls.ways_to_goal((0.0, 0.0), [(size, size)])
     straight = size * math.sqrt(2.0)

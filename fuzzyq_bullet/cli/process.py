@@ -22,7 +22,7 @@ BAD_INPUT = 2
 _GRACE = 2.0
 """Time (s) in which nothing interrupts the tidying up after an interrupt, nor one an import."""
 _SOON = 0.02
-"""Time (s) after which an interrupt that came during an import is tried again."""
+"""Time (s) after which an interrupt is tried again that came at a bad time."""
 
 
 class Stopped(BaseException):
@@ -99,6 +99,18 @@ def _catch_signals() -> None:
         raised, asked = now, None
         raise Stopped(signum)
 
+    ignored = sys.unraisablehook
+
+    def again(what: sys.UnraisableHookArgs) -> None:
+        # It came while a destructor or a callback ran, which let nothing through.
+        nonlocal raised, asked
+        if not isinstance(what.exc_value, Stopped):
+            ignored(what)
+            return
+        raised, asked = None, (what.exc_value.status - 128, time.monotonic())
+        signal.setitimer(signal.ITIMER_REAL, _SOON)
+
+    sys.unraisablehook = again
     for signum in _SIGNALS:
         # What is ignored from the start stays so: nohup, or a shell's job in the background.
         if signal.getsignal(signum) is not signal.SIG_IGN:
