@@ -21,6 +21,9 @@ Work: TypeAlias = Callable[[Job], Done]
 T = TypeVar("T")
 R = TypeVar("R")
 
+_INTERRUPTS = (signal.SIGINT, signal.SIGALRM)
+"""Ctrl-C, and one that had to wait for an import to end (``cli.process``)."""
+
 KILLED = "its worker process died twice: killed, out of memory, or crashed in a library"
 
 
@@ -159,11 +162,23 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
 
     for tracker in (resource_tracker, loky_tracker):
         tracker.ensure_running()  # first: what starts it lets the signal through again
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGALRM})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _INTERRUPTS)
+    noted: list[int] = []
+    # Another thread may be told of it instead, and Python would then raise it in the midst of this.
+    handlers = {
+        signum: signal.signal(signum, lambda late, _: noted.append(late))
+        for signum in _INTERRUPTS
+        if threading.current_thread() is threading.main_thread()
+        and callable(signal.getsignal(signum))
+    }
     try:
         yield
     finally:
+        for signum, handler in handlers.items():
+            signal.signal(signum, handler)
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for late in noted:
+            signal.raise_signal(late)
 
 
 def _begin_worker(parent: int) -> None:
