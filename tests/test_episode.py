@@ -12,6 +12,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.oracle import shortest_path
+from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import (
@@ -193,6 +194,26 @@ def test_the_kinematic_touch_is_swept_and_not_only_looked_for_at_the_end():
     with World(task.obstacles, task.arena) as world:
         trajectory = run_in(world, task, Onward())
     assert trajectory.outcome == "collision"
+
+
+@pytest.mark.parametrize("gap", [0.02, 0.21, 0.38, 0.399])
+def test_a_step_a_little_longer_than_what_is_free_ends_at_the_touch(gap):
+    start = Start(position=(2.0, 2.5))
+    obstacles = (cylinder(2.0 + 2.0 * ROBOT_RADIUS + gap, 2.5),)
+    task = realise(scenario(drive="kinematic", start=start, obstacles=obstacles))
+    with Sight(task.obstacles, task.arena) as world:
+        trajectory = run_in(world, task, Onward())
+    assert trajectory.outcome == "collision"
+    assert trajectory.ticks.position[:, 0] == pytest.approx([2.0, 2.0 + gap], abs=1e-3)
+
+
+def test_wheels_need_a_world_that_can_be_touched():
+    task = realise(scenario(drive="wheels"))
+    with (
+        Sight(task.obstacles, task.arena) as world,
+        pytest.raises(ValueError, match="wheels needs a world that can be touched"),
+    ):
+        run_in(world, task, Onward())
 
 
 def test_a_dead_end_ends_as_stuck_and_a_short_limit_as_timeout():

@@ -17,7 +17,7 @@ from fuzzyq_bullet.planning import Decision, Observation, promise
 from fuzzyq_bullet.planning.course import PATIENCE as COURSE_PATIENCE
 from fuzzyq_bullet.planning.course import Course, Leg
 from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
-from fuzzyq_bullet.planning.exits import exits_of
+from fuzzyq_bullet.planning.exits import Exit, exits_of
 from fuzzyq_bullet.planning.places import NEAR, Place, Places
 from fuzzyq_bullet.planning.promise import Walls
 from fuzzyq_bullet.planning.view import look_around
@@ -36,6 +36,12 @@ corner met from one side 1.22 m · sin 3° = 0.064 m are lost, and more only beh
 than 0.2 m."""
 ROUNDING = 1e-6
 """Headings are told to so much (rad), and so many metres more or less make no difference."""
+
+
+def walls_of(seen):
+    walls = Walls()
+    walls.add(seen)
+    return walls
 
 
 def observe(field, here, *, goal=(100.0, 0.0), time=0.0, sense=None):
@@ -147,7 +153,7 @@ def test_walls_lie_where_the_centre_of_the_disc_would_be_stopped(seen):
 def test_a_wall_in_front_is_seen_without_a_hole_and_its_end_is_open():
     field = Field(boxes=np.array([[1.0, 1.0, 0.2, 2.4, 0.0]]))  # from y = −0.2 up to 2.2
     walls = look_around(observe(field, (0.0, 0.0))).walls
-    known = Walls(walls)
+    known = walls_of(walls)
     crossed = [y for y in np.arange(-0.3, 0.45, 0.01) if not known.in_sight((0.0, y), (2.0, y))]
     assert crossed
     assert np.diff(crossed) == pytest.approx(0.01)
@@ -261,11 +267,11 @@ WALL = np.array([[[1.0, -1.0], [1.0, 1.0]]])
     ],
 )
 def test_a_line_is_in_sight_if_it_neither_crosses_nor_touches_a_wall(start, goal, clear):
-    assert Walls(WALL).in_sight(start, goal) is clear
-    assert Walls(WALL).in_sight(goal, start) is clear
-    assert Walls(WALL[:, ::-1]).in_sight(start, goal) is clear
+    assert walls_of(WALL).in_sight(start, goal) is clear
+    assert walls_of(WALL).in_sight(goal, start) is clear
+    assert walls_of(WALL[:, ::-1]).in_sight(start, goal) is clear
     far = WALL + 50.0
-    walls = Walls(far)
+    walls = walls_of(far)
     walls.add(WALL)
     assert walls.in_sight(start, goal) is clear
 
@@ -290,7 +296,7 @@ def test_through_the_open_the_least_way_is_the_straight_one(x, y):
 
 def test_around_a_wall_the_least_way_leads_past_its_nearer_end():
     wall = pieces(np.array([[[0.0, -4.0], [0.0, 1.0]]]), 40)
-    ways = Walls(wall).ways_to_goal((1.0, 0.0), [(-1.0, 0.0), (0.5, 0.0)])
+    ways = walls_of(wall).ways_to_goal((1.0, 0.0), [(-1.0, 0.0), (0.5, 0.0)])
     around = 2.0 * math.sqrt(2.0)
     # The cells of the wall's end are gone round too.
     assert around - ENDS <= ways[0] <= EIGHT * around + ENDS + 2.0 * promise.CELL
@@ -313,13 +319,13 @@ def pieces(walls, count):
 def test_walls_that_are_seen_later_count_as_if_all_had_been_known_from_the_start():
     ring, starts = pieces(square(1.0), 40), [(3.0, 0.0), (0.5, 0.0)]
     far = ring + np.array([6.0, 0.0])  # beyond all that was known: another grid
-    walls = Walls(ring[:-4])
+    walls = walls_of(ring[:-4])
     [through, _] = walls.ways_to_goal((0.0, 0.0), starts)
     assert math.isfinite(through)
     for later, known in ((ring[-4:], ring), (far, np.concatenate([ring, far]))):
         walls.add(later)
         ways = walls.ways_to_goal((0.0, 0.0), starts)
-        assert ways == Walls(known).ways_to_goal((0.0, 0.0), starts)
+        assert ways == walls_of(known).ways_to_goal((0.0, 0.0), starts)
         assert math.isinf(ways[0])
         assert math.isfinite(ways[1])
 
@@ -328,7 +334,7 @@ def test_walls_that_are_seen_later_count_as_if_all_had_been_known_from_the_start
 def test_out_of_an_enclosure_there_is_no_way_and_within_it_there_is(turned):
     walls = pieces(square(1.0), 40)
     turn = np.array([[math.cos(turned), -math.sin(turned)], [math.sin(turned), math.cos(turned)]])
-    out, within = Walls(walls @ turn.T).ways_to_goal((0.0, 0.0), [(3.0, 0.0), (0.5, 0.0)])
+    out, within = walls_of(walls @ turn.T).ways_to_goal((0.0, 0.0), [(3.0, 0.0), (0.5, 0.0)])
     assert out == math.inf
     assert within == pytest.approx(0.5, abs=ENDS)
 
@@ -343,7 +349,7 @@ def test_however_large_the_world_the_grid_stays_small(size, monkeypatch):
 
     dijkstra = csgraph.dijkstra
     monkeypatch.setattr(csgraph, "dijkstra", counting)
-    walls = Walls(pieces(square(0.4, (size / 2, 0.0)), 40))
+    walls = walls_of(pieces(square(0.4, (size / 2, 0.0)), 40))
     [way] = walls.ways_to_goal((0.0, 0.0), [(size, size)])
     straight = size * math.sqrt(2.0)
     assert way == pytest.approx(straight, rel=0.09)
@@ -812,3 +818,33 @@ def test_it_drives_each_leg_of_its_course_and_no_farther(monkeypatch):
     decision = walk.decide((0.0, 0.0))
     assert (decision.heading, decision.reach) == (1.2, 0.02)
     assert decision.step <= 0.03
+
+
+def test_ways_to_the_wanted_places_are_the_same_whatever_else_is_asked_for():
+    # 0 – 1 – 2 along a line, a long way from 0 to 3, and a shorter one to it by 2.
+    places = Places()
+    for joined in (
+        {1: 1.0, 3: 9.0},
+        {0: 1.0, 2: 1.0},
+        {1: 1.0, 3: 1.0},
+        {0: 9.0, 2: 1.0},
+        {0: 0.5},
+    ):
+        places._places.append(Place((0.0, 0.0), ways=dict(joined)))
+    places._places[0].ways[4] = 0.5
+    whole, before = places._ways(set(range(5)))
+    assert whole == [0.5, 1.5, 2.5, 3.5, 0.0]
+    for wanted in ({0}, {3}, {1, 3}, {2, 3}):
+        ways, back = places._ways(set(wanted))
+        assert [ways[one] for one in wanted] == [whole[one] for one in wanted]
+        assert [back[one] for one in wanted] == [before[one] for one in wanted]
+
+
+def test_the_way_to_every_exit_is_asked_for(monkeypatch):
+    places, asked = Places(), []
+    places._places += [Place((0.0, 0.0), ways={1: 1.0}), Place((1.0, 0.0), ways={0: 1.0})]
+    places._exits += [Exit(place, (2.0, place), 0.0, 1.0, None) for place in (1, 0)]
+    ways = places._ways
+    monkeypatch.setattr(places, "_ways", lambda wanted: asked.append(set(wanted)) or ways(wanted))
+    places.best_exit((3.0, 0.0))
+    assert asked == [{0, 1}]

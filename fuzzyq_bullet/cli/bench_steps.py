@@ -106,14 +106,16 @@ def _pair_of(text: str) -> Weights:
     """Return the weights that ``--pair`` gives, with the usual c_f."""
     from fuzzyq_bullet.cli.sweep import planner_of
     from fuzzyq_bullet.experiments.learning_gain.candidates import USUAL_BREAKOUT
+    from fuzzyq_bullet.planning import ImprovedFuzzySettings
     from fuzzyq_bullet.planning.weighing import Weights
 
     try:
-        step, turn = getattr(planner_of("improved-fuzzy", text), "weights")  # noqa: B009
+        settings = planner_of("improved-fuzzy", text)
     except UserError as error:
         told = (problem.replace("--weights", "--pair") for problem in error.problems)
         raise UserError(*told) from error
-    return Weights(step, turn, USUAL_BREAKOUT)
+    assert isinstance(settings, ImprovedFuzzySettings)
+    return Weights(*settings.weights, USUAL_BREAKOUT)
 
 
 def _search(drive: Drive, grid: int, out: Path, pool: Pool) -> tuple[Weights, dict[str, Any]]:

@@ -62,13 +62,9 @@ class _Grid:
 
 
 class Walls:
-    """All walls seen so far.
+    """All walls seen so far."""
 
-    Args:
-        seen: The first of them, as in ``add``.
-    """
-
-    def __init__(self, seen: Floats | None = None) -> None:
+    def __init__(self) -> None:
         # Loaded here: not by whoever only reads a scenario, and not while the robot drives.
         import scipy.sparse.csgraph  # noqa: F401
 
@@ -78,8 +74,6 @@ class Walls:
         self._grid: _Grid | None = None
         self._free = np.zeros((0, 0), dtype=bool)
         self._marked = 0
-        if seen is not None:
-            self.add(seen)
 
     def add(self, seen: Floats) -> None:
         """Remember walls.
