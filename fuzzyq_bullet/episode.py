@@ -82,7 +82,8 @@ class Episode:
 
     def __init__(self, world: Sight, scenario: Scenario) -> None:
         self._scenario = scenario
-        self._driver = _driver(world, scenario)
+        self._field = Field.of(scenario.obstacles, scenario.arena)
+        self._driver = _driver(world, self._field, scenario)
         self._decisions: list[tuple[int, Decision]] = []
         self._standstill = _Standstill(self.now)
         self.outcome: Outcome | None = None
@@ -126,7 +127,7 @@ class Episode:
         """
         if self.outcome is None:
             raise ValueError("the episode is not over")
-        return recorded(self._scenario, self._driver, self._decisions, self.outcome)
+        return recorded(self._scenario, self._field, self._driver, self._decisions, self.outcome)
 
     def so_far(self, told: Decision) -> Trajectory:
         """Return what has happened until now, for a picture of it.
@@ -138,7 +139,8 @@ class Episode:
             A trajectory; while the episode goes on, one that the time has run out for.
         """
         decisions = [*self._decisions, (len(self._driver.ticks) - 1, told)]
-        return recorded(self._scenario, self._driver, decisions, self.outcome or "timeout")
+        outcome = self.outcome or "timeout"
+        return recorded(self._scenario, self._field, self._driver, decisions, outcome)
 
     def _note(self, decision: Decision) -> None:
         self._decisions.append((len(self._driver.ticks) - 1, decision))
@@ -149,8 +151,7 @@ class Episode:
         self.outcome = _outcome(self._driver, decision, count, limits, self._standstill)
 
 
-def _driver(world: Sight, scenario: Scenario) -> Driver:
-    field = Field.of(scenario.obstacles, scenario.arena)
+def _driver(world: Sight, field: Field, scenario: Scenario) -> Driver:
     if scenario.drive == "kinematic":
         return KinematicDriver(world, field, scenario)
     if not isinstance(world, World):

@@ -22,6 +22,8 @@ _GRAZE = 1e-9
 """A path that would cut less deep than this (m) into something round only grazes it."""
 _PARALLEL = 1e-12
 """A direction closing in on a flat face slower than this (m per m) runs along it: cos(π/2) ≠ 0."""
+_TOGETHER = 32
+"""Points whose clearance is told at once; beside each other they share what is near them."""
 _CHUNK = 1_000_000
 """Most distances held in memory at once by ``Field.clearance``."""
 
@@ -163,10 +165,10 @@ class Field:
         p = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         result = self._to_walls(p)
         if len(self._order):
-            rows = max(1, _CHUNK // len(self._order))
+            rows = max(1, min(_TOGETHER, _CHUNK // len(self._order)))
             for k in range(0, len(p), rows):
-                part = slice(k, k + rows)
-                np.minimum(result[part], self._to_obstacles(p[part]).min(axis=1), out=result[part])
+                here, least = p[k : k + rows], result[k : k + rows]
+                np.minimum(least, self._to_obstacles(here, self._near(here)).min(1), out=least)
         return result
 
     def free_distance(
@@ -207,14 +209,29 @@ class Field:
         np.maximum(free, 0.0, out=free)
         return free
 
-    def _to_obstacles(self, p: Floats) -> Floats:
-        """Signed distances (m), shape (K, N + M), cylinders first."""
+    def _near(self, p: Floats) -> NDArray[np.bool_] | None:
+        """Return which obstacles, shape (N + M,), may be nearest to any of the points p."""
+        if len(p) == 1 or not np.isfinite(p).all():
+            return None
+        middle = (p.min(axis=0) + p.max(axis=0)) / 2.0
+        around = float(np.abs(p - middle).sum(axis=1).max())
+        # No point is farther from the middle than this, so no distance differs by more from there.
+        to = self._to_obstacles(middle[None])[0]
+        near: NDArray[np.bool_] = to <= to.min() + 2.0 * around + _GRAZE
+        return near
+
+    def _to_obstacles(self, p: Floats, which: NDArray[np.bool_] | None = None) -> Floats:
+        """Signed distances (m), shape (K, N + M), cylinders first; to all, or to ``which`` only."""
         px, py = p[:, :1], p[:, 1:]
-        cx, cy, r = self._cylinders
+        cylinders, boxes = self._cylinders, self._boxes
+        if which is not None:
+            count = cylinders.shape[1]
+            cylinders, boxes = cylinders[:, which[:count]], boxes[:, which[count:]]
+        cx, cy, r = cylinders
         to_cylinders: Floats = np.sqrt((px - cx) ** 2 + (py - cy) ** 2) - r
-        if not len(self.boxes):
+        if not boxes.size:
             return to_cylinders
-        bx, by, hx, hy, cos, sin = self._boxes
+        bx, by, hx, hy, cos, sin = boxes
         dx, dy = px - bx, py - by
         qx = np.abs(dx * cos + dy * sin) - hx
         qy = np.abs(dy * cos - dx * sin) - hy

@@ -7,14 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from fuzzyq_bullet.drives import Driver
+from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import MODES, Decision
-from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Decisions, Floats, Outcome, Ticks, Trajectory
 from fuzzyq_bullet.version import __version__
 
 
 def recorded(
     scenario: Scenario,
+    field: Field,
     driver: Driver,
     decisions: Sequence[tuple[int, Decision]],
     outcome: Outcome,
@@ -23,6 +25,7 @@ def recorded(
 
     Args:
         scenario: The scenario as it ran, every obstacle listed.
+        field: Its obstacles and walls.
         driver: The drive, with its ticks.
         decisions: Each decision with the index of the tick it was taken at.
         outcome: How the episode ended.
@@ -48,7 +51,7 @@ def recorded(
             speed=ticks[:, 4],
             turn_rate=ticks[:, 5],
             wheel_speeds=ticks[:, 6:8],
-            clearance=ticks[:, 8],
+            clearance=np.maximum(field.clearance(ticks[:, 1:3]) - ROBOT_RADIUS, 0.0),
         ),
         decisions=Decisions(
             tick=np.array([tick for tick, _ in decisions], dtype=np.int64),

@@ -20,7 +20,6 @@ class Tick(NamedTuple):
     turn_rate: float
     left_wheel: float
     right_wheel: float
-    clearance: float
 
 
 class Driver(Protocol):

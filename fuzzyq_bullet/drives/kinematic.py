@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
@@ -27,6 +28,7 @@ class KinematicDriver:
         self._field = field
         self._goal = scenario.goal
         self._step_time = longest_step_time(scenario.robot)
+        self._apart = Apart(lambda x, y: float(field.clearance([[x, y]])[0]) - ROBOT_RADIUS)
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
@@ -56,7 +58,8 @@ class KinematicDriver:
         now = self.ticks[-1]
         step = decision.step
         free = step
-        if step >= now.clearance - ROUNDING:  # what is farther away cannot stop the robot
+        # What is farther away cannot stop the robot.
+        if step >= self._apart.by(now.x, now.y, step + ROUNDING) - ROUNDING:
             [free] = self._field.free_distance(
                 (now.x, now.y), decision.heading, ROBOT_RADIUS, step
             ).tolist()
@@ -74,7 +77,6 @@ class KinematicDriver:
         self.arrived = math.dist((x, y), self._goal.position) <= self._goal.radius
 
     def _record(self, x: float, y: float, heading: float, speed: float) -> None:
-        clearance = float(self._field.clearance([[x, y]])[0]) - ROBOT_RADIUS
         self.ticks.append(
             Tick(
                 time=self.steps * self._step_time,
@@ -85,6 +87,5 @@ class KinematicDriver:
                 turn_rate=0.0,
                 left_wheel=0.0,
                 right_wheel=0.0,
-                clearance=max(0.0, clearance),
             )
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
 from fuzzyq_bullet.geometry import Field
@@ -20,6 +21,7 @@ COMMAND_STEPS = 3
 limit never asks the tyres for a jump they cannot hold."""
 TICK_STEPS = 20
 """Physics steps between two ticks: 12 a second."""
+TICK_TIME = TICK_STEPS * TIME_STEP
 DECISION_TICKS = 3
 """Ticks between two decisions: 4 a second."""
 
@@ -40,11 +42,12 @@ class WheelsDriver:
             max_turn_rate=scenario.robot.max_turn_rate,
             acceleration=scenario.robot.acceleration,
             turn_acceleration=scenario.robot.turn_acceleration,
-            period=DECISION_TICKS * TICK_STEPS * TIME_STEP,
+            period=DECISION_TICKS * TICK_TIME,
             radius=ROBOT_RADIUS,
             margin=SENSOR_MARGIN,
         )
-        self._pilot = Pilot(scenario.robot, TICK_STEPS * TIME_STEP)
+        self._pilot = Pilot(scenario.robot, TICK_TIME)
+        self._apart = Apart(world.clearance)
         self._twist = STILL
         self.steps = 0
         self.collision: Collision | None = None
@@ -136,10 +139,12 @@ class WheelsDriver:
         wheels are ever asked for: v·t + (2a)·t²/2 is how far that would take it.
         """
         speed, twice = abs(tick.speed), 2.0 * self._limits.acceleration
-        if math.isinf(tick.clearance):
+        enough = speed * TICK_TIME + twice * TICK_TIME * TICK_TIME / 2.0
+        apart = self._apart.by(tick.x, tick.y, enough)
+        if apart >= enough:
             return TICK_STEPS
-        soonest = (math.sqrt(speed * speed + 2.0 * twice * tick.clearance) - speed) / twice
-        return min(int(soonest / TIME_STEP), TICK_STEPS)
+        soonest = (math.sqrt(speed * speed + 2.0 * twice * max(0.0, apart)) - speed) / twice
+        return int(soonest / TIME_STEP)
 
     def _collision(self, contact: Contact) -> Collision:
         x, y, _ = contact.point
@@ -155,15 +160,8 @@ class WheelsDriver:
         return math.dist((tick.x, tick.y), self._goal.position) <= self._goal.radius
 
     def _record(self) -> None:
-        state = self._world.robot.state()
-        self.ticks.append(
-            Tick(
-                self.steps * TIME_STEP,
-                *state,
-                *self._world.robot.wheel_speeds(),
-                self._world.clearance(state.x, state.y),
-            )
-        )
+        robot = self._world.robot
+        self.ticks.append(Tick(self.steps * TIME_STEP, *robot.state(), *robot.wheel_speeds()))
 
 
 def _at_rest(tick: Tick) -> bool:

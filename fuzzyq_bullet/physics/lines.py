@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
+Point: TypeAlias = tuple[float, float, float]
 
 SPREAD = np.array([0.11, 0.33, 0.55, 0.75, 0.91, 1.0])
 """Offsets of the rays on either side, as parts of the corridor's half width.
@@ -43,22 +44,31 @@ class LineBundle:
         self._height = height
         self._rims: list[float] = rim.tolist()
         self._lengths: list[float] = (rim + reach).tolist()
-        # Points of the plane as complex numbers, so that a turn is one product: the starts of all
-        # rays and of the right and left probe, then their ends, for a robot that faces along x.
-        starts = np.concatenate([1j * offset, [-1j * radius, 1j * radius]])
-        ends = np.concatenate([rim + reach + 1j * offset, [-1j * wide, 1j * wide]])
-        self._local = np.array([starts, ends])[:, None, :]
+        # All rays, then the right and the left probe, of a robot that faces along x: how far to its
+        # left they start, and how far ahead and to its left they end.
+        self._starts: list[float] = [*offset.tolist(), -radius, radius]
+        self._ends: list[tuple[float, float]] = [
+            *zip(self._lengths, offset.tolist(), strict=True),
+            (0.0, -wide),
+            (0.0, wide),
+        ]
 
-    def rays(self, origin: tuple[float, float], headings: Sequence[float]) -> tuple[Floats, Floats]:
-        """Return the start and end points of all rays and probes, each of shape (K·14, 3)."""
-        turns = [[complex(math.cos(one), math.sin(one))] for one in headings]
-        turned = self._local * np.array(turns)
-        turned += complex(*origin)
-        count = turned.size // 2
-        points = np.empty((2, count, 3))
-        points[:, :, :2] = turned.view(np.float64).reshape(2, count, 2)
-        points[:, :, 2] = self._height
-        return points[0], points[1]
+    def rays(
+        self, origin: tuple[float, float], headings: Sequence[float]
+    ) -> tuple[list[Point], list[Point]]:
+        """Return the start and end points (m) of all rays and probes, K·14 of each."""
+        # Plain numbers, here and below: for so few of them an array costs more than it saves.
+        (x, y), z = origin, self._height
+        starts: list[Point] = []
+        ends: list[Point] = []
+        for heading in headings:
+            cos, sin = math.cos(heading), math.sin(heading)
+            starts += [(x - left * sin, y + left * cos, z) for left in self._starts]
+            ends += [
+                (x + (ahead * cos - left * sin), y + (ahead * sin + left * cos), z)
+                for ahead, left in self._ends
+            ]
+        return starts, ends
 
     def travel(self, fractions: Sequence[float]) -> Floats:
         """Return the free travel (m) along each heading, shape (K,), in [0, reach].
@@ -66,7 +76,6 @@ class LineBundle:
         Args:
             fractions: Where each ray ended as a part of its length (1: no hit), K·14 of them.
         """
-        # Plain numbers: for so few of them an array costs more than it saves.
         rays = len(self._rims)
         travels = []
         for first in range(0, len(fractions), rays + 2):
