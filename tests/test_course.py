@@ -91,7 +91,7 @@ def test_a_point_is_passed_only_where_it_was_really_reached():
     leg = Course([*course]).next(observe(CORNER, (0.03, -0.12)))
     assert leg.heading == pytest.approx(math.atan2(0.05, 0.97), abs=math.radians(45.0))
     assert leg.way == pytest.approx(0.1)
-    leg = Course([*course]).next(observe(CORNER, (0.03, -0.14)))
+    leg = Course([*course]).next(observe(CORNER, (0.03, -0.14), heading=math.pi / 2))
     assert leg.heading == pytest.approx(math.pi / 2)
     assert leg.reach == leg.way == pytest.approx(0.04)
 
@@ -128,6 +128,19 @@ def test_where_the_way_is_wide_it_turns_as_it_drives():
 def test_what_is_narrow_only_farther_on_is_no_matter_yet():
     leg = Course([(1.5, 0.0)]).next(observe(between(0.45, at=0.4), heading=0.3))
     assert leg.reach == math.inf
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_near_point_far_aside_is_not_circled_but_turned_to_on_the_spot(side):
+    def leg(angle, way=0.1, motion=MOTION):
+        beside = (way * math.cos(angle), side * way * math.sin(angle))
+        course = Course([beside, (3.0, side * 2.0)])
+        return course.next(observe(between(0.5), motion=motion))
+
+    assert leg(math.radians(80)).reach == 0.0
+    assert leg(math.radians(35)).reach == 0.0
+    assert leg(math.radians(20)).reach == pytest.approx(0.1)
+    assert leg(math.radians(80), motion=None).reach == pytest.approx(0.1)
 
 
 def test_a_point_robot_needs_no_turn():

@@ -19,11 +19,11 @@ from fuzzyq_bullet.trajectory import Collision
 COMMAND_STEPS = 3
 """Physics steps between two wheel commands: 80 a second, so that the ramp of the acceleration
 limit never asks the tyres for a jump they cannot hold."""
-TICK_STEPS = 20
-"""Physics steps between two ticks: 12 a second."""
+TICK_STEPS = 40
+"""Physics steps between two ticks: 6 a second."""
 TICK_TIME = TICK_STEPS * TIME_STEP
-DECISION_TICKS = 3
-"""Ticks between two decisions: 4 a second."""
+DECISION_TICKS = 2
+"""Ticks between two decisions: 3 a second."""
 
 RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05

@@ -1,11 +1,12 @@
 """Product inference, maximum aggregation and the sampled centroid (Eqs. 2–5 and 22).
 
-All that does not depend on the inputs is computed once, so that one inference is a dozen
-operations on arrays of at most a thousand numbers.
+All that does not depend on the inputs is computed once. What is left of one inference is some
+hundred plain numbers, then three operations on arrays of a thousand.
 """
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,14 +31,13 @@ class ProductInference:
     """
 
     __slots__ = (
-        "_as_column",
-        "_centers",
+        "_column_sets",
+        "_concluding",
         "_fallback",
-        "_gather",
         "_moments",
-        "_rows",
+        "_row_sets",
         "_sampled",
-        "_scales",
+        "_shape",
         "base",
         "samples",
     )
@@ -61,11 +61,10 @@ class ProductInference:
         self.samples = samples
         self._fallback = tuple(fallback)
 
-        inputs = (*base.row.sets, *base.column.sets)
-        self._rows = len(base.row.sets)
-        self._centers = np.array([one.center for one in inputs])
-        self._scales = np.array([-0.5 / one.width**2 for one in inputs])
-
+        self._row_sets, self._column_sets = (
+            [(one.center, -0.5 / one.width**2) for one in variable.sets]
+            for variable in (base.row, base.column)
+        )
         grids = [np.linspace(*output.domain, samples) for output in base.outputs]
         # The aggregates of all outputs, end to end, times this are first every Σ u·μ(u), then every
         # Σ μ(u): one small product instead of a pair for each output.
@@ -86,20 +85,18 @@ class ProductInference:
             }
             for k, output in enumerate(base.outputs)
         ]
-        # Short lists are filled up by repetition, which no maximum notices.
-        most_labels = max(map(len, concluded))
-        most_rules = max(len(numbers) for labels in concluded for numbers in labels.values())
-        gather = np.empty((most_rules, most_labels, count), dtype=np.intp)
-        self._sampled = np.empty((most_labels, count, samples))
-        for k, (output, u, labels) in enumerate(zip(base.outputs, grids, concluded, strict=True)):
-            sampled = dict(zip(output.labels, output.memberships(u), strict=True))
-            names = list(labels)
-            for slot in range(most_labels):
-                name = names[slot % len(names)]
-                gather[:, slot, k] = np.resize(labels[name], most_rules)
-                self._sampled[slot, k] = sampled[name]
-        self._gather = gather.reshape(most_rules, most_labels * count)
-        self._as_column = (most_labels, count, 1)
+        # Where one output has fewer of them, one is repeated, which no maximum notices.
+        most = max(map(len, concluded))
+        self._concluding: list[list[int]] = []
+        self._sampled = np.empty((most, count, samples))
+        self._shape = (most, count, 1)
+        for slot in range(most):
+            for k, (output, u, labels) in enumerate(
+                zip(base.outputs, grids, concluded, strict=True)
+            ):
+                name = list(labels)[slot % len(labels)]
+                self._concluding.append(labels[name])
+                self._sampled[slot, k] = output.memberships(u)[output.labels.index(name)]
 
     def infer(self, x: float, y: float) -> tuple[Floats, Floats, Floats, tuple[float, ...]]:
         """Fuzzify, fire the rules, aggregate and take the centroids.
@@ -113,19 +110,16 @@ class ProductInference:
             (Eq. 2), shape (R, C); and one centroid (Eq. 22) for each output, or its fallback where
             the aggregate is zero all over. The arrays are the caller's own.
         """
-        rows = self._rows
-        sets = np.array((x,) * rows + (y,) * (len(self._centers) - rows))
-        sets -= self._centers
-        sets *= sets
-        sets *= self._scales
-        np.exp(sets, sets)
-        row, column = sets[:rows], sets[rows:]
-        strengths = np.multiply.outer(row, column)
+        # Plain numbers: for so few of them an array costs more than it saves.
+        exp = math.exp
+        row = [exp((x - center) * (x - center) * scale) for center, scale in self._row_sets]
+        column = [exp((y - center) * (y - center) * scale) for center, scale in self._column_sets]
+        strengths = [one * other for one in row for other in column]
 
         # Eqs. 3 and 4. Rules that conclude the same set differ only by a factor, so the largest
         # of them is that set times the largest strength.
-        labels = np.maximum.reduce(strengths.take(self._gather)).reshape(self._as_column)
-        aggregate = np.maximum.reduce(labels * self._sampled)
+        labels = [max([strengths[rule] for rule in rules]) for rules in self._concluding]
+        aggregate = np.maximum.reduce(np.array(labels).reshape(self._shape) * self._sampled)
 
         sums = aggregate.ravel().dot(self._moments).tolist()
         count = len(self._fallback)
@@ -137,4 +131,5 @@ class ProductInference:
                 )
             ]
         )
-        return row, column, strengths, values
+        rules = np.array(strengths).reshape(len(row), len(column))
+        return np.array(row), np.array(column), rules, values

@@ -21,6 +21,10 @@ NARROW = math.radians(4.0)
 """Where the way is not free by so much to either side it is narrow: the robot must face it ..."""
 FACING = math.radians(2.0)
 """... as exactly as this before it enters (rad)."""
+BESIDE = 0.15
+"""A point of the way as near as this (m) ..."""
+ASKEW = math.radians(30.0)
+"""... and as far off where the robot faces (rad) cannot be met on an arc, only circled."""
 ASIDE = tuple(
     math.radians(side * degrees)
     for degrees in (0.7, 1.5, 2.5, 4, 6, 9, 13, 18, 25, 35, 50, 70, 90)
@@ -95,9 +99,15 @@ class Course:
 
 
 def _must_aim(observation: Observation, heading: float, way: float) -> bool:
-    """Return whether the robot must turn on the spot before it takes a way: it is narrow."""
-    if observation.motion is None or abs(wrap_angle(heading - observation.heading)) <= FACING:
+    """Return whether the robot must turn on the spot before it takes a way.
+
+    So it must where the way is narrow, and where its end lies so far beside that an arc misses it.
+    """
+    turn = abs(wrap_angle(heading - observation.heading))
+    if observation.motion is None or turn <= FACING:
         return False
+    if way <= BESIDE and turn > ASKEW:
+        return True
     beside = observation.sense([heading - NARROW, heading + NARROW])
     return bool(beside.min() < min(way, 2.0 * LEAST))
 
