@@ -36,7 +36,7 @@ _FAR = 1e7
 class Ticks:
     """The robot's state at every tick of the drive, first the start and last the end.
 
-    ``T`` ticks; 6 a second with wheels, one for each step (Eq. 17) in the kinematic drive.
+    ``T`` ticks; one every 0.15 s with wheels, one for each step (Eq. 17) in the kinematic drive.
 
     Attributes:
         time: Simulated time (s), shape (T,), increasing.

@@ -136,7 +136,7 @@ def test_a_line_is_never_longer_than_the_way_to_contact(engine, obstacles, origi
         return
     world = World(obstacles, FIELD, engine=engine)
     headings = heading + np.linspace(0.0, 6.0, 12)
-    sensed = world.sense(origin, headings)
+    sensed = np.array(world.sense(origin, headings))
     truth = field.free_distance(origin, headings, ROBOT_RADIUS, SENSOR_RANGE)
     assert (sensed <= truth + SENSOR_MARGIN).all()
     assert (sensed >= 0.0).all()

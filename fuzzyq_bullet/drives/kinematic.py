@@ -6,6 +6,7 @@ import math
 
 from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
+from fuzzyq_bullet.drives.sensor import RangeSensor
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
@@ -49,7 +50,7 @@ class KinematicDriver:
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
             radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=lambda headings: self._world.sense(position, headings),
+            sense=RangeSensor(self._world, position),
             look=lambda headings: self._world.look(position, headings),
         )
 

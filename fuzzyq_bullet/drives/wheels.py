@@ -8,6 +8,7 @@ from collections.abc import Callable
 from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
+from fuzzyq_bullet.drives.sensor import RangeSensor
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.robot import wheel_commands
@@ -19,11 +20,11 @@ from fuzzyq_bullet.trajectory import Collision
 COMMAND_STEPS = 3
 """Physics steps between two wheel commands: 80 a second, so that the ramp of the acceleration
 limit never asks the tyres for a jump they cannot hold."""
-TICK_STEPS = 40
-"""Physics steps between two ticks: 6 a second."""
+TICK_STEPS = 36
+"""Physics steps between two ticks: one every 0.15 s."""
 TICK_TIME = TICK_STEPS * TIME_STEP
 DECISION_TICKS = 2
-"""Ticks between two decisions: 3 a second."""
+"""Ticks between two decisions: one every 0.3 s."""
 
 RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05
@@ -70,7 +71,7 @@ class WheelsDriver:
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
             radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=lambda headings: self._world.sense(position, headings),
+            sense=RangeSensor(self._world, position),
             look=lambda headings: self._world.look(position, headings),
             motion=self._motion,
         )

@@ -7,9 +7,7 @@ from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats: TypeAlias = NDArray[np.float64]
 Point: TypeAlias = tuple[float, float, float]
 
 SPREAD = np.array([0.11, 0.33, 0.55, 0.75, 0.91, 1.0])
@@ -70,8 +68,8 @@ class LineBundle:
             ]
         return starts, ends
 
-    def travel(self, fractions: Sequence[float]) -> Floats:
-        """Return the free travel (m) along each heading, shape (K,), in [0, reach].
+    def travel(self, fractions: Sequence[float]) -> list[float]:
+        """Return the free travel (m) along each of the K headings, in [0, reach].
 
         Args:
             fractions: Where each ray ended as a part of its length (1: no hit), K·14 of them.
@@ -90,4 +88,4 @@ class LineBundle:
                 if fraction < 1.0 and fraction * length - rim < least:
                     least = fraction * length - rim
             travels.append(least if least > 0.0 else 0.0)
-        return np.array(travels)
+        return travels

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.groups import Group
-from fuzzyq_bullet.physics.lines import Floats, LineBundle
+from fuzzyq_bullet.physics.lines import LineBundle
 from fuzzyq_bullet.physics.robot import BODY_HEIGHT
 from fuzzyq_bullet.physics.sensing import meshes
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena, Box, Cylinder
@@ -49,7 +50,7 @@ class Sight:
         self._lines = LineBundle(ROBOT_RADIUS, SENSOR_MARGIN, SENSOR_RANGE, BODY_HEIGHT)
         self._build(obstacles, arena)
 
-    def sense(self, origin: tuple[float, float], headings: Sequence[float]) -> Floats:
+    def sense(self, origin: tuple[float, float], headings: Sequence[float]) -> list[float]:
         """Return how far the robot's disc could move from ``origin`` along each heading.
 
         Args:
@@ -57,7 +58,7 @@ class Sight:
             headings: World headings (rad), at least one and at most 1000.
 
         Returns:
-            Free travel (m), shape (K,), in [0, ``SENSOR_RANGE``].
+            Free travel (m), one for each, in [0, ``SENSOR_RANGE``].
         """
         start, stop = self._lines.rays(origin, headings)
         hits = self._api.rayTestBatch(
@@ -65,7 +66,7 @@ class Sight:
         )
         return self._lines.travel([hit[2] for hit in hits])
 
-    def look(self, origin: tuple[float, float], headings: Sequence[float]) -> Floats:
+    def look(self, origin: tuple[float, float], headings: Sequence[float]) -> NDArray[np.float64]:
         """Return the distance (m) from ``origin`` to what stands there along each heading.
 
         Args:

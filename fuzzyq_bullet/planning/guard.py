@@ -26,7 +26,7 @@ def guarded(decision: Decision, observation: Observation) -> Decision:
     """
     if observation.motion is not None:
         return _guarded_on_wheels(decision, observation, observation.motion)
-    [free] = _free(decision, observation, [decision.heading])
+    [free] = observation.sense([decision.heading]).tolist()
     return replace(decision, step=_usable(free, decision.step), guard=free)
 
 
@@ -44,19 +44,27 @@ def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Mot
     coast = observation.turn_rate * abs(observation.turn_rate) / (2.0 * motion.turn_acceleration)
     start = max(0.0, min(coast, turn)) if turn >= 0.0 else min(0.0, max(coast, turn))
     spacing = _spacing(motion, observation.speed)
-    passed = [0.0, *_spread(0.0, coast, spacing)]
-    wanted = _spread(start, turn, spacing)
-    free = _free(decision, observation, [facing + way for way in (*passed, *wanted)])
+    if start == coast and NARROW < abs(turn) <= spacing:
+        # The two cover all that it comes by.
+        passed, wanted = [0.0], [turn]
+    else:
+        first = turn if abs(turn) <= NARROW else 0.0
+        passed = [first, *_spread(0.0, coast, spacing)]
+        wanted = _spread(start, turn, spacing)
+    # The very heading of the decision, not a sum that rounds: it may have been sensed already.
+    headings = [decision.heading if way == turn else facing + way for way in (*passed, *wanted)]
+    free = _free(decision, observation, headings)
 
     reach = min(free[: len(passed)]) - RESERVE
     heading, ahead = facing + start if wanted else decision.heading, reach + RESERVE
     need = observation.speed * motion.period + motion.way_to_stop(observation.speed)
-    for further, length in zip(wanted, free[len(passed) :], strict=True):
+    later = slice(len(passed), None)
+    for further, length in zip(headings[later], free[later], strict=True):
         if RESERVE < need > length - RESERVE:
             reach = 0.0
             break
         reach = min(reach, length - RESERVE)
-        heading, ahead = facing + further, length
+        heading, ahead = further, length
     return replace(
         decision,
         heading=heading,

@@ -1,0 +1,32 @@
+"""The range sensor of one instant: no line is cast twice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fuzzyq_bullet.physics.sight import Sight
+from fuzzyq_bullet.planning.base import Floats
+
+
+class RangeSensor:
+    """Free distances from one place. The parts of a planner ask it in turn, often for the same.
+
+    Args:
+        world: What there is to be seen.
+        origin: Centre of the robot (m).
+    """
+
+    def __init__(self, world: Sight, origin: tuple[float, float]) -> None:
+        self._world = world
+        self._origin = origin
+        self._known: dict[float, float] = {}
+
+    def __call__(self, headings: Sequence[float]) -> Floats:
+        """Return the free distance (m) along world headings (rad), shape (K,)."""
+        known = self._known
+        missing = [heading for heading in headings if heading not in known]
+        if missing:
+            known.update(zip(missing, self._world.sense(self._origin, missing), strict=True))
+        return np.array([known[heading] for heading in headings])
