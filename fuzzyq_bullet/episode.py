@@ -11,7 +11,6 @@ import numpy as np
 from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.pilot import Twist
-from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner, make_planner
@@ -82,8 +81,8 @@ class Episode:
 
     def __init__(self, world: Sight, scenario: Scenario) -> None:
         self._scenario = scenario
-        self._field = Field.of(scenario.obstacles, scenario.arena)
-        self._driver = _driver(world, self._field, scenario)
+        self._field = world.field
+        self._driver = _driver(world, scenario)
         self._decisions: list[tuple[int, Decision]] = []
         self._standstill = _Standstill(self.now)
         self.outcome: Outcome | None = None
@@ -151,12 +150,12 @@ class Episode:
         self.outcome = _outcome(self._driver, decision, count, limits, self._standstill)
 
 
-def _driver(world: Sight, field: Field, scenario: Scenario) -> Driver:
+def _driver(world: Sight, scenario: Scenario) -> Driver:
     if scenario.drive == "kinematic":
-        return KinematicDriver(world, field, scenario)
+        return KinematicDriver(world, scenario)
     if not isinstance(world, World):
         raise ValueError(f"the drive {scenario.drive} needs a world that can be touched")
-    return WheelsDriver(world, field, scenario)
+    return WheelsDriver(world, scenario)
 
 
 class _Standstill:

@@ -7,7 +7,6 @@ import math
 from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
 from fuzzyq_bullet.drives.sensor import RangeSensor
-from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
@@ -24,9 +23,9 @@ class KinematicDriver:
     would meet on the straight line of the step, not only at its end.
     """
 
-    def __init__(self, world: Sight, field: Field, scenario: Scenario) -> None:
+    def __init__(self, world: Sight, scenario: Scenario) -> None:
         self._world = world
-        self._field = field
+        self._field = field = world.field
         self._goal = scenario.goal
         self._step_time = longest_step_time(scenario.robot)
         self._apart = Apart(lambda x, y: float(field.clearance([[x, y]])[0]) - ROBOT_RADIUS)

@@ -9,7 +9,6 @@ from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
 from fuzzyq_bullet.drives.sensor import RangeSensor
-from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.robot import wheel_commands
 from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
@@ -33,9 +32,8 @@ RESTING_TURN_RATE = 0.05
 class WheelsDriver:
     """Drives a world's robot by its wheels, watching for contact after every physics step."""
 
-    def __init__(self, world: World, field: Field, scenario: Scenario) -> None:
+    def __init__(self, world: World, scenario: Scenario) -> None:
         self._world = world
-        self._field = field
         self._goal = scenario.goal
         self._limits = scenario.robot
         self._motion = Motion(
@@ -153,7 +151,7 @@ class WheelsDriver:
         return Collision(
             time=self.steps * TIME_STEP,
             point=(x, y),
-            obstacle=-1 if wall else int(self._field.distances((x, y)).argmin()),
+            obstacle=-1 if wall else int(self._world.field.distances((x, y)).argmin()),
             normal_force=contact.force,
         )
 

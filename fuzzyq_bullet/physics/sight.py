@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.groups import Group
 from fuzzyq_bullet.physics.lines import LineBundle
@@ -34,6 +35,9 @@ class Sight:
         obstacles: All obstacles, already validated.
         arena: The rectangle, with or without walls.
         engine: An engine to build in, emptied first; by default a new one that is owned.
+
+    Attributes:
+        field: The exact geometry of all obstacles and walls.
     """
 
     def __init__(
@@ -43,6 +47,7 @@ class Sight:
         *,
         engine: Engine | None = None,
     ) -> None:
+        self.field = Field.of(obstacles, arena)
         self._owns_engine = engine is None
         self.engine = engine or Engine()
         self.engine.reset()
