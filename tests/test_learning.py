@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -379,18 +378,3 @@ def test_with_all_of_the_trace_one_episode_tells_the_whole_chain() -> None:
     assert np.flatnonzero(short.table).tolist() == [chain - 1]
     expected = [0.5 * 0.95 ** (chain - 1 - s) for s in range(chain)]
     assert long.table[:, 0] == pytest.approx(expected)
-
-
-# Speed
-
-
-def test_a_step_of_learning_takes_microseconds() -> None:
-    learner = QLambda(64, 25)
-    learner.begin(0.1, 0.01)
-    best = np.inf
-    for _repeat in range(5):
-        start = time.perf_counter()
-        for i in range(1000):
-            learner.learn(i % 64, 0, -1.0, (i + 1) % 64)
-        best = min(best, (time.perf_counter() - start) / 1000)
-    assert best < 50e-6  # about 4 µs; ten times that is still nothing beside a simulated step

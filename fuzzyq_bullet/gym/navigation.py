@@ -37,7 +37,7 @@ _LEAST = {
 
 
 class NavigationEnv(EpisodeEnv):
-    """The robot is driven by its twist, which is held for 0.25 s within its acceleration.
+    """The robot is driven by its twist, which is held for 0.3 s within its acceleration.
 
     Action, shape (2,), each from −1 to 1:
         0. Forward speed: −1 stands, 1 is the greatest speed. It never backs up.

@@ -70,7 +70,7 @@ class WeightsEnv(EpisodeEnv):
             what it asks to be ``random`` is drawn anew. What it sets for its planner stays, as far
             as ``improved-fuzzy`` has it. By default every episode is a random task that has a way.
         count: Obstacles of a random task, 0 to 150, or the least and the most as a pair.
-        drive: ``wheels`` or ``kinematic``, whatever the scenario says. A decision lasts 0.25 s on
+        drive: ``wheels`` or ``kinematic``, whatever the scenario says. A decision lasts 0.3 s on
             wheels, and one step of the point robot otherwise.
         render_mode: ``rgb_array``, or None for no pictures.
 
