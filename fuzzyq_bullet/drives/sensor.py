@@ -26,7 +26,7 @@ class RangeSensor:
     def __call__(self, headings: Sequence[float]) -> Floats:
         """Return the free distance (m) along world headings (rad), shape (K,)."""
         known = self._known
-        missing = [heading for heading in headings if heading not in known]
+        missing = [heading for heading in dict.fromkeys(headings) if heading not in known]
         if missing:
             known.update(zip(missing, self._world.sense(self._origin, missing), strict=True))
         return np.array([known[heading] for heading in headings])
