@@ -193,6 +193,11 @@ def test_a_robot_that_still_turns_away_minds_where_it_turns():
 
     observation, _ = seen(view, heading=0.0, speed=0.3, turn_rate=-2.0, motion=MOTION)
     assert improved().decide(observation).reach <= 0.1
+    # The same where it is to turn back the other way: to the goal, 0.3 rad to its left.
+    observation, _ = seen(
+        lambda way: view(way + 0.4), heading=-0.3, speed=0.3, turn_rate=-2.0, motion=MOTION
+    )
+    assert improved().decide(observation).reach <= 0.1
 
 
 @given(
