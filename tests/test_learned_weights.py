@@ -112,7 +112,7 @@ def test_a_choice_stands_until_the_robot_is_nearer_than_ever_and_on_no_way_out(
 def test_it_chooses_anew_only_where_an_encounter_begins(tmp_path: Path) -> None:
     path = tmp_path / "two.json"
     thinking(0, 1, len(ACTIONS) - 1).save(path)
-    task = realise(random_task(5, count=60))
+    task = realise(random_task(6, count=40))
     record = run(task.model_copy(update={"planner": FuzzyQLambdaSettings(policy=str(path))}))
     decisions = record.decisions
     away = np.hypot(*(record.ticks.position[decisions.tick] - task.goal.position).T)
