@@ -155,7 +155,7 @@ class Trajectory:
             sha.update(np.ascontiguousarray(array).tobytes())
         return sha.hexdigest()[:32]
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path | str) -> None:
         """Write the record as a compressed ``.npz`` (plain arrays and JSON, no pickle).
 
         Raises:
@@ -174,11 +174,11 @@ class Trajectory:
         # Made in memory first: on a full disk an archive is left open, and complains on its own.
         archive = io.BytesIO()
         np.savez_compressed(archive, **arrays)
-        with written_beside(path) as part:
+        with written_beside(Path(path)) as part:
             part.write_bytes(archive.getbuffer())
 
     @classmethod
-    def load(cls, path: Path) -> Trajectory:
+    def load(cls, path: Path | str) -> Trajectory:
         """Read a record written by ``save``.
 
         Of a planner that is not registered here only the name is kept: what it did is all there.
@@ -186,7 +186,7 @@ class Trajectory:
         Raises:
             UserError: If the file is missing, damaged, or not a record of this format.
         """
-        arrays = read_arrays(path)
+        arrays = read_arrays(Path(path))
         try:
             meta = json.loads(str(arrays.pop("meta")))
             form = meta["format"]

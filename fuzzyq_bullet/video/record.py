@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from PIL import Image
@@ -17,7 +18,6 @@ from fuzzyq_bullet.video.timeline import Moment, Timeline
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from fuzzyq_bullet.trajectory import Trajectory
 
@@ -43,7 +43,7 @@ class VideoInfo(NamedTuple):
 
 def record(
     trajectory: Trajectory,
-    path: Path,
+    path: Path | str,
     *,
     speed: float = 1.0,
     small: bool = False,
@@ -70,6 +70,7 @@ def record(
     timeline = Timeline(trajectory)
     total = frame_count(timeline, speed)
     film = Film()
+    path = Path(path)
     with (
         written_beside(path) as part,
         Stage(trajectory, speed) as stage,
