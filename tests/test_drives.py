@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fuzzyq_bullet.drives.apart import Apart
-from fuzzyq_bullet.drives.sensor import RangeSensor
+from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.scenario import Arena, Cylinder
@@ -61,7 +61,7 @@ def test_a_line_is_cast_once_and_told_as_often_as_asked():
                 cast.extend(headings)
                 return world.sense(origin, headings)
 
-        sense = RangeSensor(Watched(), (2.0, 2.0))
+        sense = CastOnce(Watched(), (2.0, 2.0))
         headings = [0.0, 1.0, 2.0, 0.0]
         first = sense(headings)
         assert first.tolist() == world.sense((2.0, 2.0), headings)

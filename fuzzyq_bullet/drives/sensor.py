@@ -10,8 +10,8 @@ from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.planning.base import Floats
 
 
-class RangeSensor:
-    """Free distances from one place. The parts of a planner ask it in turn, often for the same.
+class CastOnce:
+    """A range sensor at one place: the parts of a planner ask it in turn, often for the same.
 
     Args:
         world: What there is to be seen.

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
-from fuzzyq_bullet.drives.sensor import RangeSensor
+from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.robot import wheel_commands
 from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
@@ -69,7 +69,7 @@ class WheelsDriver:
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
             radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=RangeSensor(self._world, position),
+            sense=CastOnce(self._world, position),
             look=lambda headings: self._world.look(position, headings),
             motion=self._motion,
         )
