@@ -32,6 +32,7 @@ class Exit(NamedTuple):
         way: From the place to the point (m).
         beyond: What is not seen yet (m); once it is, there is no more to find out here. None for a
             gap: whether it leads on is only seen from within.
+        ahead: Whether that lies straight on, where the sight ended and nothing stood.
     """
 
     place: int
@@ -39,6 +40,7 @@ class Exit(NamedTuple):
     heading: float
     way: float
     beyond: Point | None
+    ahead: bool = False
 
 
 def exits_of(place: int, here: Point, view: View) -> Iterator[Exit]:
@@ -51,7 +53,7 @@ def exits_of(place: int, here: Point, view: View) -> Iterator[Exit]:
             last = heading
             way = free - SHY
             beyond = along(here, heading, free + BEHIND)
-            yield Exit(place, along(here, heading, way), heading, way, beyond)
+            yield Exit(place, along(here, heading, way), heading, way, beyond, ahead=True)
         for beside, side in ((k - 1, -1), ((k + 1) % count, 1)):
             hidden = view.lengths[beside]
             if free - hidden > JUMP:

@@ -23,7 +23,8 @@ ENCLOSED = 1000.0
 _BACK = (0.0, -0.1, -0.2)
 _INTO = (0.0, 0.1, 0.2, -0.1, -0.2)
 """Where the way on from an exit is taken to begin, from its point on (m): the first of these that
-lies in no wall. A gap is entered; elsewhere what lies before the point is known to be free."""
+lies in no wall. A gap is entered; elsewhere what lies before the point is known to be free, and
+where nothing ended the sight, what lies between the point and the end of the sight."""
 
 
 @dataclass(slots=True)
@@ -142,13 +143,14 @@ class Places:
 
     def _ways_on(self, goal: Point) -> list[float]:
         """Return the least way (m) from each exit to the goal; infinite where there is none."""
-        starts, counts = [], []
-        for one in self._exits:
-            offsets = _INTO if one.beyond is None else _BACK
-            starts += [along(one.point, one.heading, max(by, -one.way)) for by in offsets]
-            counts.append(len(offsets))
+        offsets = [[max(by, -one.way) for by in _ways_from(one)] for one in self._exits]
+        starts = [
+            along(one.point, one.heading, by)
+            for one, some in zip(self._exits, offsets, strict=True)
+            for by in some
+        ]
         found = iter(self._walls.ways_to_goal(goal, starts))
-        ways = [[next(found) for _ in range(count)] for count in counts]
+        ways = [[max(by, 0.0) + next(found) for by in some] for some in offsets]
         return [next(filter(math.isfinite, some), math.inf) for some in ways]
 
     def _ways(self, wanted: set[int]) -> tuple[list[float], list[int]]:
@@ -170,6 +172,14 @@ class Places:
                     ways[other], before[other] = way + further, at
                     heapq.heappush(heap, (way + further, other))
         return ways, before
+
+
+def _ways_from(one: Exit) -> tuple[float, ...]:
+    if one.beyond is None:
+        return _INTO
+    if one.ahead:
+        return (math.dist(one.point, one.beyond), *_BACK)
+    return _BACK
 
 
 def _is_known(one: Exit, place: Place) -> bool:
