@@ -589,6 +589,17 @@ def test_the_exit_with_the_least_way_to_the_goal_comes_first():
     assert chosen.point[0] > 0.2
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_gap_it_has_seen_right_through_comes_before_the_way_around(side):
+    # 4 mm to spare on either side: on the grid of the promise the gap is shut. The goal stands so
+    # far aside that the straight line to it crosses what is beside the gap.
+    field = Field(np.array(row(2.0 * WIDE + 0.008)))
+    around = [(-0.3, 0.6 * k) for k in range(-6, 7) if k]
+    chosen, _ = looked(field, *around, (-0.3, 0.0)).best_exit((1.4, 2.0 * side))
+    assert abs(chosen.heading) < 0.02
+    assert chosen.point[0] > 0.4
+
+
 def test_along_a_wall_that_was_seen_whole_an_end_comes_before_all_that_leads_away():
     # The wall reaches from x = −3 to 3. Straight to the goal, what lies below is less far.
     field = Field(boxes=np.array([[0.0, 1.0, 6.0, 0.2, 0.0]]))
