@@ -23,6 +23,7 @@ from fuzzyq_bullet.checks.junit import junit_xml
 from fuzzyq_bullet.checks.record import Entry, compare, this_platform
 from fuzzyq_bullet.checks.verdict import Job, Verdict
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.resources import data_folder
 from fuzzyq_bullet.trajectory import Trajectory
 
 PLANNERS = '''\
@@ -370,6 +371,14 @@ def test_a_record_that_cannot_be_read_is_a_mistake_and_the_scenario_runs(
     assert (done.returncode, done.stdout[:10]) == (2, "ok    good")
     assert "1 not compared: not recorded yet" in done.stderr
     assert "error: check-record.json: not a record of fuzzyq check --record" in done.stderr
+
+
+def test_a_bundled_scenario_is_not_recorded_into_the_installation(
+    inside: Call, tmp_path: Path
+) -> None:
+    with pytest.raises(UserError, match="mixed: --record notes beside the scenario, and this one"):
+        inside("check", "mixed", "--record", cwd=tmp_path)
+    assert not (data_folder("scenarios") / "check-record.json").exists()
 
 
 def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(

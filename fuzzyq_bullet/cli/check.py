@@ -18,7 +18,7 @@ from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from fuzzyq_bullet.checks.crew import Crew
     from fuzzyq_bullet.checks.verdict import Verdict
@@ -101,6 +101,8 @@ def check(
 
     if record and strict:
         raise UserError("--record and --strict exclude each other: one notes, the other compares")
+    if record:
+        _refuse_bundled(paths)
     load_plugins(plugin or [])
     found = find(paths)
     folder = None if video is Video.none else writable_folder(out)
@@ -202,6 +204,23 @@ def _fitted(lines: list[str]) -> list[str]:
             break_on_hyphens=False,
         )
     return told
+
+
+def _refuse_bundled(paths: Sequence[str]) -> None:
+    """Keep --record from writing into the installation.
+
+    Raises:
+        UserError: If one of the paths is the name of a bundled scenario, and no file.
+    """
+    from fuzzyq_bullet.resources import data_folder
+
+    for path in paths:
+        bundled = data_folder("scenarios") / f"{path}.yaml"
+        if not Path(path).exists() and bundled.is_file():
+            raise UserError(
+                f"{path}: --record notes beside the scenario, and this one is bundled with the "
+                f"package; copy {bundled} to a folder of your own"
+            )
 
 
 def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None]) -> None:
