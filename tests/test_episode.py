@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet import metrics
+from fuzzyq_bullet.drives.apart import Apart
+from fuzzyq_bullet.drives.wheels import WheelsDriver
 from fuzzyq_bullet.episode import run, run_in
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
@@ -145,6 +147,28 @@ class Onward:
 
     def decide(self, observation):
         return Decision(heading=self.heading, step=0.4)
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+@pytest.mark.parametrize("away", [*np.linspace(0.3, 0.41, 12), 1.0, 2.5, 4.5])
+def test_a_touch_is_noticed_at_once_from_wherever_the_robot_came(drive, away, monkeypatch):
+    # The last two begin with nothing within 2 m, farther than the physics tells clearances.
+    task = realise(
+        scenario(
+            arena=Arena(size=(12.0, 9.0)),
+            start=Start(position=(8.0 - 0.4 - away, 4.5)),
+            goal=Goal(position=(11.0, 4.5)),
+            obstacles=(cylinder(8.0, 4.5),),
+            drive=drive,
+        )
+    )
+    with World(task.obstacles, task.arena) as world:
+        hit = run_in(world, task, Onward()).collision
+        assert hit is not None
+        # The same with a look for contact after every step.
+        monkeypatch.setattr(WheelsDriver, "_steps_apart", lambda self, tick: 0)
+        monkeypatch.setattr(Apart, "by", lambda self, x, y, enough: 0.0)
+        assert run_in(world, task, Onward()).collision == hit
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])

@@ -12,7 +12,8 @@ class Apart:
     It falls by no more than the robot moves, so one measurement serves for a while.
 
     Args:
-        measure: The clearance (m) of a robot whose centre is at (x, y).
+        measure: The clearance (m) of a robot whose centre is at (x, y), or less; infinite only
+            where there is nothing at all.
     """
 
     def __init__(self, measure: Callable[[float, float], float]) -> None:

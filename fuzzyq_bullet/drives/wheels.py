@@ -11,7 +11,7 @@ from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.robot import wheel_commands
-from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
+from fuzzyq_bullet.physics.world import CLEARANCE_RANGE, SENSOR_MARGIN, SENSOR_RANGE, World
 from fuzzyq_bullet.planning.base import Decision, Motion, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
@@ -46,7 +46,8 @@ class WheelsDriver:
             margin=SENSOR_MARGIN,
         )
         self._pilot = Pilot(scenario.robot, TICK_TIME)
-        self._apart = Apart(world.clearance)
+        # Beyond its range the world only tells that nothing is nearer.
+        self._apart = Apart(lambda x, y: min(world.clearance(x, y), CLEARANCE_RANGE))
         self._twist = STILL
         self.steps = 0
         self.collision: Collision | None = None
