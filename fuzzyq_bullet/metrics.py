@@ -49,7 +49,7 @@ class Result(BaseModel):
             for.
         spl: Success weighted by path length, 0 to 1: shortest over driven path, 0 for a run that
             did not reach the goal; null where ``shortest_path_m`` is.
-        min_clearance_m: Least distance to anything (m); null when nothing came near.
+        min_clearance_m: Least distance to anything (m); null when there is nothing.
         collisions: Contacts: 0, or 1, since the first one ends the run.
         turning_rad: Sum of all changes of direction, left and right (rad).
         modes: Decisions in each mode.

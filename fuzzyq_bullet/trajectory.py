@@ -45,7 +45,7 @@ class Ticks:
         speed: Forward speed (m/s), shape (T,).
         turn_rate: Turn rate (rad/s), shape (T,).
         wheel_speeds: Speeds of the left and right wheel (rad/s), shape (T, 2).
-        clearance: Distance to the nearest obstacle or wall (m), shape (T,); inf when none is near.
+        clearance: Distance to the nearest obstacle or wall (m), shape (T,); inf when there is none.
     """
 
     time: Floats

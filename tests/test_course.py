@@ -16,7 +16,7 @@ MOTION = Motion(
     max_turn_rate=2.0,
     acceleration=1.0,
     turn_acceleration=6.0,
-    period=0.25,
+    period=0.3,
     radius=0.2,
     margin=0.02,
 )

@@ -27,7 +27,7 @@ MOTION = Motion(
     max_turn_rate=2.0,
     acceleration=1.0,
     turn_acceleration=6.0,
-    period=0.15,
+    period=0.3,
     radius=0.2,
     margin=0.02,
 )
@@ -168,7 +168,7 @@ def test_the_guard_of_a_turning_robot_covers_all_it_will_sweep():
 
 def test_something_on_the_way_round_limits_how_far_it_may_go():
     def view(heading):
-        return 0.3 if 0.4 < heading < 0.8 else 1.0
+        return 0.3 if 0.35 < heading < 0.85 else 1.0
 
     clear = improved().decide(seen(lambda _: 1.0, heading=1.2, speed=0.3, motion=MOTION)[0])
     narrow = improved().decide(seen(view, heading=1.2, speed=0.3, motion=MOTION)[0])

@@ -207,19 +207,19 @@ def _fitted(lines: list[str]) -> list[str]:
 
 
 def _refuse_bundled(paths: Sequence[str]) -> None:
-    """Keep --record from writing into the installation.
+    """Make sure that --record is not asked to write beside what is bundled.
 
     Raises:
         UserError: If one of the paths is the name of a bundled scenario, and no file.
     """
     from fuzzyq_bullet.resources import data_folder
 
+    bundled = {file.stem: file for file in data_folder("scenarios").glob("*.yaml")}
     for path in paths:
-        bundled = data_folder("scenarios") / f"{path}.yaml"
-        if not Path(path).exists() and bundled.is_file():
+        if path in bundled and not os.path.exists(path):  # noqa: PTH110 - a long name is no error
             raise UserError(
                 f"{path}: --record notes beside the scenario, and this one is bundled with the "
-                f"package; copy {bundled} to a folder of your own"
+                f"package; copy {bundled[path]} to a folder of your own"
             )
 
 

@@ -33,7 +33,7 @@ class Figures:
         path_ratio: Mean over the successes of driven over shortest path; None without any.
         time_ratio: Median over the successes of the time to the goal over that of the shortest path
             at full speed; None without any.
-        clearance: Least distance to anything in any of them (m); None when nothing came near.
+        clearance: Least distance to anything in any of them (m); None when there was nothing.
     """
 
     episodes: int

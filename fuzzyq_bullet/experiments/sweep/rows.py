@@ -36,7 +36,7 @@ class Row(BaseModel):
         path_length_m: Length of the driven path (m).
         shortest_path_m: Length of the shortest path (m); None where there is none.
         spl: Success weighted by path length; None where there is no way.
-        min_clearance_m: Least distance to anything (m); None when nothing came near.
+        min_clearance_m: Least distance to anything (m); None when there was nothing.
         collisions: 0 or 1.
         digest: Hash of the exact trajectory.
         layout: Name of the layout that drew the obstacles.
