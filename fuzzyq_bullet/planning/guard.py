@@ -33,10 +33,10 @@ def guarded(decision: Decision, observation: Observation) -> Decision:
 def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Motion) -> Decision:
     """Guard a robot that comes round to its new heading on an arc, and stops late.
 
-    Every point of that arc up to a stop lies between the direction the robot faces and the new
-    heading, so a fan of corridors between the two covers it: the least of them is how far the robot
-    may be able to go. Where the fan is shorter somewhere than the robot now needs to stop, it may
-    not turn that far yet; it brakes first, and turns as it gets slower.
+    Seen from here, every point of that arc up to a stop lies between the direction the robot faces
+    and the new heading, so a fan of corridors between the two covers it: the least of them is how
+    far the robot may be able to go. Where the fan is shorter somewhere than the robot now needs to
+    stop, it may not turn that far yet; it brakes first, and turns as it gets slower.
     """
     facing = observation.heading
     turn = wrap_angle(decision.heading - facing)
