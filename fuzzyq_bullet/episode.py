@@ -22,9 +22,10 @@ from fuzzyq_bullet.trajectory import Outcome, Trajectory
 Progress: TypeAlias = Callable[[float, float], None]
 """Called after every decision with the simulated time (s) and the distance to the goal (m)."""
 
-STUCK_TIME = 10.0
+STUCK_TIME = 15.0
 STUCK_RADIUS = 0.1
-"""A robot that stays within this distance (m) for ``STUCK_TIME`` seconds is stuck."""
+"""A robot that stays within this distance (m) for ``STUCK_TIME`` seconds is stuck: longer than it
+may take in a narrow place to turn round, try a way twice, and give it up."""
 
 
 def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
@@ -71,6 +72,7 @@ class Episode:
     Args:
         world: A world that is built for the scenario; the kinematic drive only looks at it.
         scenario: A realised scenario.
+        patience: How long the robot may stay at one place before it counts as stuck (s).
 
     Raises:
         ValueError: If there is nothing in the world for wheels to drive on.
@@ -79,12 +81,12 @@ class Episode:
         outcome: How it ended; None while it goes on.
     """
 
-    def __init__(self, world: Sight, scenario: Scenario) -> None:
+    def __init__(self, world: Sight, scenario: Scenario, *, patience: float = STUCK_TIME) -> None:
         self._scenario = scenario
         self._field = world.field
         self._driver = _driver(world, scenario)
         self._decisions: list[tuple[int, Decision]] = []
-        self._standstill = _Standstill(self.now)
+        self._standstill = _Standstill(self.now, patience)
         self.outcome: Outcome | None = None
 
     @property
@@ -161,16 +163,17 @@ def _driver(world: Sight, scenario: Scenario) -> Driver:
 class _Standstill:
     """Notices that the robot has stayed about one place for too long."""
 
-    def __init__(self, start: Tick) -> None:
+    def __init__(self, start: Tick, patience: float) -> None:
         self._anchor = start
+        self._patience = patience
 
     def lasts(self, now: Tick) -> bool:
-        """Return whether the robot has been near one place for ``STUCK_TIME`` by now."""
+        """Return whether the robot has been near one place for too long by now."""
         anchor = self._anchor
         if math.hypot(now.x - anchor.x, now.y - anchor.y) > STUCK_RADIUS:
             self._anchor = now
             return False
-        return now.time - anchor.time >= STUCK_TIME
+        return now.time - anchor.time >= self._patience
 
 
 def _outcome(

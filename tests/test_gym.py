@@ -208,7 +208,7 @@ def test_standing_still_ends_as_stuck_or_is_cut_off_by_the_limits(
     assert info["reward"]["given_up"] < 0.0
     patient = room.model_copy(update={"limits": room.limits.model_copy(update={"time": 60.0})})
     ended, cut, info, steps = last(patient)
-    assert (ended, cut, info["outcome"], steps) == (True, False, "stuck", 34)
+    assert (ended, cut, info["outcome"], steps) == (True, False, "stuck", 50)
 
 
 @both

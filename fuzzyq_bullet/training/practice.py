@@ -14,6 +14,9 @@ from fuzzyq_bullet.training.rewards import Reward
 from fuzzyq_bullet.training.tasks import Tasks
 from fuzzyq_bullet.training.ways import Ways
 
+PATIENCE = 10.0
+"""How long the robot may stay at one place before an episode of a training is given up (s)."""
+
 
 class Practice:
     """What all problems share that are learned by driving.
@@ -39,7 +42,7 @@ class Practice:
             self._engine = Engine()
         self._scenario = scenario = self._tasks.scenario_of(episode)
         self._world = World(scenario.obstacles, scenario.arena, engine=self._engine)
-        self._episode = Episode(self._world, scenario)
+        self._episode = Episode(self._world, scenario, patience=PATIENCE)
         self._ways = Ways(scenario) if self._true_ways else None
         self._left = self._to_goal(self._episode.now)
         self._decided = 0
@@ -94,5 +97,5 @@ class Practice:
                 "limits": Limits(time=time, steps=steps),
             }
         )
-        self._episode = Episode(self._world, self._scenario)
+        self._episode = Episode(self._world, self._scenario, patience=PATIENCE)
         self._decided = 0
