@@ -12,12 +12,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fuzzyq_bullet.episode import run, run_in
+from fuzzyq_bullet.episode import STUCK_TIME, run, run_in
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, Schedule, load_policy
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import QLambdaSettings, QLearningSettings, make_planner, planner_names
-from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
 from fuzzyq_bullet.planning.direct import (
     ACTION_NAMES,
     ACTIONS,
@@ -32,7 +32,7 @@ from fuzzyq_bullet.planning.direct import (
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.scenario import Scenario, parse_scenario
 from fuzzyq_bullet.training.direct import DirectProblem
-from fuzzyq_bullet.training.practice import Practice
+from fuzzyq_bullet.training.practice import PATIENCE, Practice
 from fuzzyq_bullet.training.recipes import learn, recipe_of
 from fuzzyq_bullet.training.rewards import HIT
 from fuzzyq_bullet.training.tasks import Tasks
@@ -303,6 +303,16 @@ def test_practice_ends_with_a_hit_where_hits_end_it() -> None:
         reward = practice.advance(act(sense(practice.observe()), STRAIGHT))
     assert practice.outcome == "collision"
     assert reward.contact == -HIT
+
+
+def test_practice_gives_up_sooner_than_a_run() -> None:
+    practice = Practice(Tasks(drive="wheels", scenario=world_of("q-learning", BLOCK)))
+    practice.begin(1)
+    while not practice.over:
+        still = practice.observe()
+        practice.advance(Decision(heading=still.heading, step=0.0))
+    assert practice.outcome == "stuck"
+    assert still.time < PATIENCE < STUCK_TIME < still.time + 6.0
 
 
 @pytest.mark.parametrize("drive", ["kinematic", "wheels"])
