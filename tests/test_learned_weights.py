@@ -157,9 +157,10 @@ def test_with_a_larger_c_f_it_breaks_out_before_it_is_near() -> None:
 
 
 def test_it_chooses_by_situation() -> None:
-    weights = run(realise(load_scenario("mixed"))).decisions.weights
     assert DEFAULT_PLANNER == load_scenario("mixed").planner.name == "fuzzy-q-lambda"
-    assert len({tuple(pair) for pair in weights.tolist()}) > 1
+    among = run(realise(random_task(3, count=40))).decisions
+    assert len({tuple(pair) for pair in among.weights.tolist()}) > 1
+    assert len(set(among.breakout_at.tolist())) > 1
 
 
 def test_a_policy_file_that_changes_is_read_again(tmp_path: Path) -> None:
