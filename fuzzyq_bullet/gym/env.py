@@ -43,7 +43,7 @@ class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         UserError: If there is no such render mode.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 (as Gymnasium has it)
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 3}  # noqa: RUF012 (as Gymnasium has it)
 
     def __init__(
         self, tasks: TaskSource, sees: Mapping[str, float], *, render_mode: str | None
