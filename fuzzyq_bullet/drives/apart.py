@@ -19,7 +19,7 @@ class Apart:
     def __init__(self, measure: Callable[[float, float], float]) -> None:
         self._measure = measure
         self._known = -math.inf
-        self._at = (0.0, 0.0)
+        self._at = (math.nan, math.nan)
 
     def by(self, x: float, y: float, enough: float) -> float:
         """Return a distance (m) that is free all around the robot at (x, y).
@@ -27,7 +27,7 @@ class Apart:
         Where it is less than ``enough`` (m), it is the clearance itself.
         """
         left = self._known - math.dist(self._at, (x, y))
-        if left >= enough:
+        if left >= enough or (x, y) == self._at:
             return left
         self._known, self._at = self._measure(x, y), (x, y)
         return self._known

@@ -16,11 +16,13 @@ class CastOnce:
     Args:
         world: What there is to be seen.
         origin: Centre of the robot (m).
+        apart: By how much the robot is surely apart from everything (m).
     """
 
-    def __init__(self, world: Sight, origin: tuple[float, float]) -> None:
+    def __init__(self, world: Sight, origin: tuple[float, float], apart: float = 0.0) -> None:
         self._world = world
         self._origin = origin
+        self._apart = apart
         self._known: dict[float, float] = {}
 
     def __call__(self, headings: Sequence[float]) -> Floats:
@@ -28,5 +30,6 @@ class CastOnce:
         known = self._known
         missing = [heading for heading in dict.fromkeys(headings) if heading not in known]
         if missing:
-            known.update(zip(missing, self._world.sense(self._origin, missing), strict=True))
+            told = self._world.sense(self._origin, missing, apart=self._apart)
+            known.update(zip(missing, told, strict=True))
         return np.array([known[heading] for heading in headings])

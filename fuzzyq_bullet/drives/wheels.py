@@ -70,7 +70,7 @@ class WheelsDriver:
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
             radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=CastOnce(self._world, position),
+            sense=CastOnce(self._world, position, self._apart_at(now)),
             look=lambda headings: self._world.look(position, headings),
             motion=self._motion,
         )
@@ -133,18 +133,28 @@ class WheelsDriver:
         return None
 
     def _steps_apart(self, tick: Tick) -> int:
-        """Return for how many steps from a tick on the robot surely cannot touch anything.
-
-        To come nearer to what is nearest than this, it would take twice the acceleration that the
-        wheels are ever asked for: v·t + (2a)·t²/2 is how far that would take it.
-        """
-        speed, twice = abs(tick.speed), 2.0 * self._limits.acceleration
-        enough = speed * TICK_TIME + twice * TICK_TIME * TICK_TIME / 2.0
-        apart = self._apart.by(tick.x, tick.y, enough)
-        if apart >= enough:
+        """Return for how many steps from a tick on the robot surely cannot touch anything."""
+        apart = self._apart_at(tick)
+        if apart >= self._way_in_a_tick(tick):
             return TICK_STEPS
+        speed, twice = abs(tick.speed), 2.0 * self._limits.acceleration
         soonest = (math.sqrt(speed * speed + 2.0 * twice * max(0.0, apart)) - speed) / twice
         return int(soonest / TIME_STEP)
+
+    def _apart_at(self, tick: Tick) -> float:
+        """Return by how much the robot is surely apart from everything (m).
+
+        It is the very clearance where that may be used up within the next tick.
+        """
+        return self._apart.by(tick.x, tick.y, self._way_in_a_tick(tick))
+
+    def _way_in_a_tick(self, tick: Tick) -> float:
+        """Return more than the robot could drive within the next tick (m).
+
+        It would take twice the acceleration that the wheels are ever asked for: v·t + (2a)·t²/2.
+        """
+        twice = 2.0 * self._limits.acceleration
+        return abs(tick.speed) * TICK_TIME + twice * TICK_TIME * TICK_TIME / 2.0
 
     def _collision(self, contact: Contact) -> Collision:
         x, y, _ = contact.point

@@ -25,7 +25,8 @@ class LineBundle:
     The rays of one line run parallel. They start on the disc's diameter and the travel is counted
     from its front rim. The two outermost rays start outside the robot, within the margin, where
     there may be an obstacle already; a probe from the robot's side to each of these two starts
-    tells, and such a ray is left out: what stands beside the robot does not stop it.
+    tells, and such a ray is left out: what stands beside the robot does not stop it. Whoever knows
+    that nothing stands there need not probe.
 
     Args:
         radius: Radius of the robot (m).
@@ -35,55 +36,61 @@ class LineBundle:
     """
 
     def __init__(self, radius: float, margin: float, reach: float, height: float) -> None:
-        wide = radius + margin
-        offset = wide * np.concatenate([-SPREAD[::-1], SPREAD])
-        rim = np.sqrt(wide**2 - offset**2)
-        self.reach = reach
+        self._radius = radius
+        self._wide = wide = radius + margin
+        self._reach = reach
         self._height = height
-        self._rims: list[float] = rim.tolist()
-        self._lengths: list[float] = (rim + reach).tolist()
-        # All rays, then the right and the left probe, of a robot that faces along x: how far to its
-        # left they start, and how far ahead and to its left they end.
-        self._starts: list[float] = [*offset.tolist(), -radius, radius]
-        self._ends: list[tuple[float, float]] = [
-            *zip(self._lengths, offset.tolist(), strict=True),
-            (0.0, -wide),
-            (0.0, wide),
-        ]
+        aside = wide * SPREAD
+        rims = np.sqrt(wide**2 - aside**2)
+        # The pairs of rays, one on the right and one on the left, from the inside out: how far
+        # aside they run, and how far ahead they end.
+        self._pairs: list[tuple[float, float]] = list(
+            zip(aside.tolist(), (rims + reach).tolist(), strict=True)
+        )
+        # For each ray its length, and how far of it the front rim is.
+        self._lengths: list[float] = np.repeat(rims + reach, 2).tolist()
+        self._rims: list[float] = np.repeat(rims, 2).tolist()
 
     def rays(
-        self, origin: tuple[float, float], headings: Sequence[float]
+        self, origin: tuple[float, float], headings: Sequence[float], *, probes: bool
     ) -> tuple[list[Point], list[Point]]:
-        """Return the start and end points (m) of all rays and probes, K·14 of each."""
+        """Return the start and end points (m) of all rays: for each heading 12, and 2 probes."""
         # Plain numbers, here and below: for so few of them an array costs more than it saves.
         (x, y), z = origin, self._height
         starts: list[Point] = []
         ends: list[Point] = []
         for heading in headings:
             cos, sin = math.cos(heading), math.sin(heading)
-            starts += [(x - left * sin, y + left * cos, z) for left in self._starts]
-            ends += [
-                (x + (ahead * cos - left * sin), y + (ahead * sin + left * cos), z)
-                for ahead, left in self._ends
-            ]
+            for aside, ahead in self._pairs:
+                dx, dy, far_x, far_y = aside * sin, aside * cos, ahead * cos, ahead * sin
+                starts.append((x + dx, y - dy, z))
+                starts.append((x - dx, y + dy, z))
+                ends.append((x + (far_x + dx), y + (far_y - dy), z))
+                ends.append((x + (far_x - dx), y + (far_y + dy), z))
+            if probes:
+                for side in (-1, 1):
+                    for radius, points in ((self._radius, starts), (self._wide, ends)):
+                        points.append((x - side * radius * sin, y + side * radius * cos, z))
         return starts, ends
 
-    def travel(self, fractions: Sequence[float]) -> list[float]:
+    def travel(self, fractions: Sequence[float], *, probes: bool) -> list[float]:
         """Return the free travel (m) along each of the K headings, in [0, reach].
 
         Args:
-            fractions: Where each ray ended as a part of its length (1: no hit), K·14 of them.
+            fractions: Where each ray ended as a part of its length (1: no hit), in the order of
+                ``rays``.
+            probes: Whether there are probes among them.
         """
-        rays = len(self._rims)
+        count = len(self._lengths)
         travels = []
-        for first in range(0, len(fractions), rays + 2):
-            right, left = fractions[first + rays : first + rays + 2]
-            inner = slice(right < 1.0, rays - (left < 1.0))
-            ended = fractions[first : first + rays][inner]
-            least = self.reach
-            for fraction, length, rim in zip(
-                ended, self._lengths[inner], self._rims[inner], strict=True
-            ):
+        for first in range(0, len(fractions), count + 2 if probes else count):
+            ended = list(fractions[first : first + count])
+            if probes:
+                for ray in (-2, -1):  # the outermost; its probe comes as far after the last
+                    if fractions[first + count + 2 + ray] < 1.0:
+                        ended[ray] = 1.0
+            least = self._reach
+            for fraction, length, rim in zip(ended, self._lengths, self._rims, strict=True):
                 # A free line is exactly as long as the range, not rounded.
                 if fraction < 1.0 and fraction * length - rim < least:
                     least = fraction * length - rim

@@ -14,7 +14,7 @@ from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.groups import Group
 from fuzzyq_bullet.physics.lines import LineBundle
 from fuzzyq_bullet.physics.robot import BODY_HEIGHT
-from fuzzyq_bullet.physics.sensing import meshes
+from fuzzyq_bullet.physics.sensing import ROUNDNESS, meshes
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena, Box, Cylinder
 
 SENSOR_RANGE = 1.0
@@ -23,6 +23,9 @@ SENSOR_MARGIN = 0.02
 """How much wider than the robot a detection line is, on either side (m)."""
 
 _FACES = int(Group.FACES)
+BESIDE = SENSOR_MARGIN + 5.0 * ROUNDNESS
+"""What is no nearer to the robot's body than this stands in no line's margin (m): the faces that
+rays meet reach a little beyond what is really there."""
 _Self = TypeVar("_Self", bound="Sight")
 
 
@@ -55,21 +58,26 @@ class Sight:
         self._lines = LineBundle(ROBOT_RADIUS, SENSOR_MARGIN, SENSOR_RANGE, BODY_HEIGHT)
         self._build(obstacles, arena)
 
-    def sense(self, origin: tuple[float, float], headings: Sequence[float]) -> list[float]:
+    def sense(
+        self, origin: tuple[float, float], headings: Sequence[float], *, apart: float = 0.0
+    ) -> list[float]:
         """Return how far the robot's disc could move from ``origin`` along each heading.
 
         Args:
             origin: Centre of the robot (m).
             headings: World headings (rad), at least one and at most 1000.
+            apart: By how much the robot is surely apart from everything (m). It changes nothing
+                that is told: rays that could meet nothing are not cast.
 
         Returns:
             Free travel (m), one for each, in [0, ``SENSOR_RANGE``].
         """
-        start, stop = self._lines.rays(origin, headings)
+        probes = apart < BESIDE
+        start, stop = self._lines.rays(origin, headings, probes=probes)
         hits = self._api.rayTestBatch(
             start, stop, collisionFilterMask=_FACES, physicsClientId=self.engine.client
         )
-        return self._lines.travel([hit[2] for hit in hits])
+        return self._lines.travel([hit[2] for hit in hits], probes=probes)
 
     def look(self, origin: tuple[float, float], headings: Sequence[float]) -> NDArray[np.float64]:
         """Return the distance (m) from ``origin`` to what stands there along each heading.

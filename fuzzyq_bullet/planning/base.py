@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Literal, Protocol, TypeAlias, get_args
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Protocol, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,8 +91,7 @@ for _blank in (_NO_LINES, _NO_SETS, _NO_RULES):
     _blank.flags.writeable = False
 
 
-@dataclass(frozen=True, slots=True)
-class Decision:
+class Decision(NamedTuple):
     """Where to go next, and everything a picture needs to show why.
 
     Only ``heading``, ``step`` and ``reach`` move the robot. The rest explains the decision; a
@@ -124,13 +123,13 @@ class Decision:
     step: float
     reach: float = float("inf")
     mode: Mode = "routine"
-    lines: Floats = field(default_factory=lambda: _NO_LINES)
-    lengths: Floats = field(default_factory=lambda: _NO_LINES)
+    lines: Floats = _NO_LINES
+    lengths: Floats = _NO_LINES
     distance: float = float("nan")
     difference: float = float("nan")
-    near: Floats = field(default_factory=lambda: _NO_SETS)
-    side: Floats = field(default_factory=lambda: _NO_SETS)
-    rules: Floats = field(default_factory=lambda: _NO_RULES)
+    near: Floats = _NO_SETS
+    side: Floats = _NO_SETS
+    rules: Floats = _NO_RULES
     turn: float = float("nan")
     stride: float = float("nan")
     weights: tuple[float, float] = (float("nan"), float("nan"))

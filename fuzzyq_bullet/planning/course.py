@@ -34,8 +34,8 @@ ASIDE = tuple(
     for side in (1, -1)
 )
 """Turns away from the way seen before, where the robot cannot take it quite as it was seen."""
-AT_ONCE = 6
-"""How many of them are tried in one batch of rays; mostly one of the first few is free."""
+AT_ONCE = 2
+"""How many of them are tried in one batch of rays; mostly one of the first is free."""
 LEAST = 0.5 * STEP_UNIT
 """What must be free to go aside (m)."""
 

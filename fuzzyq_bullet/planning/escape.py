@@ -11,7 +11,6 @@ Why it ends, and what it guarantees: see ``docs/escape.md``.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Decision, Mode, Observation
 from fuzzyq_bullet.planning.course import NEARER, Course
@@ -85,7 +84,7 @@ class Escape:
         if self._straight:
             # What ended the avoidance was this line: it is driven as promised, and the controller
             # has its turn again when the robot is nearer than ever before.
-            return replace(routine, heading=float(routine.lines[1]))
+            return routine._replace(heading=float(routine.lines[1]))
         return routine
 
     def _look(self, observation: Observation) -> None:
@@ -108,10 +107,9 @@ class Escape:
                 self._fail(tried)
             self._look(observation)
         if self._exit is None or leg is None:
-            return replace(routine, step=0.0, reach=0.0, mode=mode, hopeless=True)
+            return routine._replace(step=0.0, reach=0.0, mode=mode, hopeless=True)
         step = routine.weights[0] * LONGEST_STRIDE * STEP_UNIT
-        return replace(
-            routine,
+        return routine._replace(
             heading=leg.heading,
             step=step if observation.motion is not None else min(step, leg.way),
             reach=leg.reach,
@@ -141,7 +139,7 @@ def _break_out(routine: Decision, observation: Observation, middle: float) -> De
         if (found := first_free(observation.sense, bearing, side, enough, math.pi)) is not None
     ]
     if not sides:
-        return replace(routine, step=0.0, reach=0.0, mode="breakout")
+        return routine._replace(step=0.0, reach=0.0, mode="breakout")
     side, found = min(sides, key=lambda one: round(one[1].turned, 3))
     found = eased(observation.sense, found, side, enough)
     to_goal = math.dist(observation.position, observation.goal)
@@ -149,8 +147,7 @@ def _break_out(routine: Decision, observation: Observation, middle: float) -> De
     way = min(found.free, max(0.0, to_goal * math.cos(found.heading - bearing)))
     x, y = observation.position
     step = routine.weights[0] * LONGEST_STRIDE * STEP_UNIT
-    return replace(
-        routine,
+    return routine._replace(
         heading=found.heading,
         step=step if observation.motion is not None else min(ENOUGH, found.free),
         mode="breakout",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from fuzzyq_bullet.geometry import wrap_angle
 from fuzzyq_bullet.planning.base import Decision, Motion, Observation
@@ -27,7 +26,7 @@ def guarded(decision: Decision, observation: Observation) -> Decision:
     if observation.motion is not None:
         return _guarded_on_wheels(decision, observation, observation.motion)
     [free] = observation.sense([decision.heading]).tolist()
-    return replace(decision, step=_usable(free, decision.step), guard=free)
+    return decision._replace(step=_usable(free, decision.step), guard=free)
 
 
 def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Motion) -> Decision:
@@ -65,8 +64,7 @@ def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Mot
             break
         reach = min(reach, length - RESERVE)
         heading, ahead = further, length
-    return replace(
-        decision,
+    return decision._replace(
         heading=heading,
         step=_usable(ahead, decision.step),
         reach=max(0.0, min(reach, decision.reach)),
