@@ -171,6 +171,30 @@ class Field:
                 np.minimum(least, self._to_obstacles(here, self._near(here)).min(1), out=least)
         return result
 
+    def around(self, x: float, y: float, reach: float) -> tuple[list[list[float]], float]:
+        """Return what is near a point, and how far the nearest of the rest is (m).
+
+        Args:
+            x: The point (m).
+            y: The point (m).
+            reach: What is no farther than this is near (m), and so is the nearest of all.
+
+        Returns:
+            For each obstacle near it, a rectangle with round corners: its x, y, half sizes, the
+            cosine and sine of its yaw, and the radius of its corners. A box has none; of a
+            cylinder there is nothing else.
+        """
+        to = self._to_obstacles(np.array([[x, y]]))[0]
+        near = to <= max(reach, to.min(initial=math.inf))
+        count = self._cylinders.shape[1]
+        cx, cy, r = self._cylinders[:, near[:count]]
+        nil = np.zeros_like(r)
+        boxes = self._boxes[:, near[count:]]
+        shapes = np.hstack(
+            [[cx, cy, nil, nil, nil + 1.0, nil, r], [*boxes, np.zeros(boxes[0].size)]]
+        )
+        return shapes.T.tolist(), float(to[~near].min(initial=math.inf))
+
     def free_distance(
         self, origin: ArrayLike, headings: ArrayLike, radius: float, limit: float
     ) -> Floats:

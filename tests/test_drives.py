@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fuzzyq_bullet.drives.apart import Apart
+from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.sight import Sight
@@ -44,6 +45,48 @@ def test_it_is_measured_anew_only_where_that_may_matter():
     assert measured == [(0.0, 0.0), (0.8, 0.0)]
 
 
+def test_what_was_measured_at_this_very_place_is_not_measured_again():
+    measured = []
+    apart = Apart(lambda x, y: measured.append((x, y)) or 0.1)
+    assert [apart.by(1.0, 2.0, enough) for enough in (0.05, 0.3, 0.2)] == [0.1] * 3
+    assert len(measured) == 1
+
+
+@given(
+    st.lists(st.tuples(place, st.floats(0.05, 1.0)), max_size=8),
+    st.lists(
+        st.tuples(place, st.floats(0.05, 2.0), st.floats(0.05, 2.0), st.floats(-3.2, 3.2)),
+        max_size=5,
+    ),
+    st.sampled_from([None, (3.0, 2.5)]),
+    st.lists(place, min_size=1, max_size=8),
+    st.lists(st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)), max_size=30),
+)
+def test_what_is_near_tells_the_clearance_of_all(cylinders, boxes, arena, jumps, moves):
+    field = Field(
+        np.array([(*at, radius) for at, radius in cylinders]),
+        np.array([(*at, *size) for at, *size in boxes]),
+        arena,
+    )
+    near = Nearby(field)
+    way = np.cumsum([jumps[0], *moves], axis=0).tolist()
+    for x, y in [*way, *jumps]:
+        assert near.clearance(x, y) == pytest.approx(field.clearance([(x, y)])[0], abs=1e-9)
+
+
+def test_what_is_near_is_looked_for_now_and_then_only(monkeypatch):
+    looked = []
+    around = Field.around
+    monkeypatch.setattr(
+        Field, "around", lambda self, *asked: looked.append(asked) or around(self, *asked)
+    )
+    field = Field(np.array([[k, 1.0, 0.2] for k in range(30)]))
+    near = Nearby(field)
+    for x in np.arange(5.0, 15.0, 0.05):
+        near.clearance(float(x), 0.0)
+    assert 2 <= len(looked) <= 25
+
+
 def test_where_nothing_stands_it_is_asked_once():
     measured = []
     apart = Apart(lambda x, y: measured.append((x, y)) or math.inf)
@@ -57,14 +100,14 @@ def test_a_line_is_cast_once_and_told_as_often_as_asked():
         cast = []
 
         class Watched:
-            def sense(self, origin, headings):
+            def sense(self, origin, headings, *, apart):
                 cast.extend(headings)
-                return world.sense(origin, headings)
+                return world.sense(origin, headings, apart=apart)
 
         sense = CastOnce(Watched(), (2.0, 2.0))
         headings = [0.0, 1.0, 2.0, 0.0]
         first = sense(headings)
-        assert first.tolist() == world.sense((2.0, 2.0), headings)
-        assert sense([2.0, 0.5, 0.0]).tolist() == world.sense((2.0, 2.0), [2.0, 0.5, 0.0])
-        assert sense([]).shape == (0,)
+        assert first == world.sense((2.0, 2.0), headings)
+        assert sense([2.0, 0.5, 0.0]) == world.sense((2.0, 2.0), [2.0, 0.5, 0.0])
+        assert sense([]) == []
         assert sorted(cast) == [0.0, 0.5, 1.0, 2.0]

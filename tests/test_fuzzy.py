@@ -175,7 +175,7 @@ def test_strengths_are_products_of_the_memberships() -> None:
     assert column == pytest.approx(HUMIDITY.memberships(0.3))
     for i in range(2):
         for j in range(2):
-            assert strengths[i, j] == pytest.approx(row[i] * column[j])
+            assert strengths[i][j] == pytest.approx(row[i] * column[j])
 
 
 def test_rules_scale_what_they_conclude_and_do_not_cut_it() -> None:
@@ -227,5 +227,5 @@ def test_where_no_rule_fires_the_controller_goes_straight_and_least_far() -> Non
         {"FULL": "IN", "SOME": "IN", "OFF": "OUT"}, {"IN": "FULL", "OUT": "SOME"},
     ))  # fmt: skip
     inference = FuzzyController(rules).infer(5.0, 0.5)
-    assert inference.rules.max() == 0.0
+    assert np.max(inference.rules) == 0.0
     assert (inference.turn, inference.stride) == (0.0, HEAT.domain[0])

@@ -121,11 +121,11 @@ def test_outputs_stay_within_their_domains(
     assert -2.0 <= inference.turn <= 2.0
     assert 0.0 <= inference.stride <= 2.0
     for degrees in (inference.near, inference.side, inference.rules):
-        assert degrees.min() >= 0.0
-        assert degrees.max() <= 1.0
+        assert np.min(degrees) >= 0.0
+        assert np.max(degrees) <= 1.0
     # Table 2 leaves no gap: everything belongs to something.
-    assert inference.near.max() > 0.4
-    assert inference.side.max() > 0.4
+    assert max(inference.near) > 0.4
+    assert max(inference.side) > 0.4
 
 
 @given(st.floats(5.0, math.inf), st.floats(5.0, math.inf))
@@ -133,7 +133,7 @@ def test_inputs_are_clipped_to_their_domains(far: float, wide: float) -> None:
     controller = paper_controller()
     assert controller.infer(far, wide).turn == controller.infer(5.0, 5.0).turn
     assert controller.infer(-far, -wide).stride == controller.infer(0.0, -5.0).stride
-    assert controller.infer(-far, -wide).side.tolist() == controller.infer(0, -5).side.tolist()
+    assert controller.infer(-far, -wide).side == controller.infer(0, -5).side
 
 
 @pytest.mark.parametrize(("distance", "difference"), [(math.nan, 0.0), (1.0, math.nan)])
@@ -143,19 +143,11 @@ def test_not_a_number_is_refused(distance: float, difference: float) -> None:
 
 
 @given(distances, differences)
-def test_it_has_no_memory_and_shares_none(distance: float, difference: float) -> None:
+def test_it_has_no_memory(distance: float, difference: float) -> None:
     controller = paper_controller()
     first = controller.infer(distance, difference)
-    expected = [first.near.copy(), first.side.copy(), first.rules.copy()]
-    arrays = (first.near, first.side, first.rules)
-    assert not any(np.shares_memory(a, b) for a in arrays for b in arrays if a is not b)
-    for array in arrays:
-        array.fill(7.0)
-    again = controller.infer(distance, difference)
-    assert (again.turn, again.stride) == (first.turn, first.stride)
-    for array, value in zip((again.near, again.side, again.rules), expected, strict=True):
-        assert array.tolist() == value.tolist()
-        assert array.dtype == np.float64
+    controller.infer(2.0 - distance, -difference)
+    assert controller.infer(distance, difference) == first
 
 
 @given(distances, differences, differences, sample_counts)
@@ -286,7 +278,7 @@ def test_unknown_tables_and_too_few_samples_are_refused() -> None:
 
 def test_an_inference_cannot_be_changed() -> None:
     inference = paper_controller().infer(1.0, 1.0)
-    assert dataclasses.is_dataclass(inference)
-    with pytest.raises(dataclasses.FrozenInstanceError):
+    with pytest.raises(AttributeError):
         inference.turn = 0.0  # type: ignore[misc]
     assert not hasattr(inference, "__dict__")
+    hash(inference)  # nor can anything in it

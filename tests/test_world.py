@@ -1,6 +1,7 @@
 """The world: what stands in it is there, whatever its number, and every touch is noticed."""
 
 import math
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -179,11 +180,72 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
     assert np.diff(offsets).max() < least
 
 
-def test_what_stands_beside_the_robot_does_not_stop_it(engine):
+@pytest.mark.parametrize("length", [0.6, 4.0])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_what_stands_beside_the_robot_does_not_stop_it(engine, side, length):
     # 1 cm beside its way, inside the margin of the line: it may go on, the geometry says so.
-    world = World([box(3.0, 2.0, 4.0, 1.0)], FIELD, engine=engine)
-    [along] = world.sense((3.0, 2.5 + ROBOT_RADIUS + 0.01), [0.0])
+    world = World([box(3.0, 3.0 + side * 0.5, length, 1.0)], FIELD, engine=engine)
+    [along] = world.sense((3.0, 3.0 - side * (ROBOT_RADIUS + 0.01)), [0.0])
     assert along == SENSOR_RANGE
+
+
+def test_who_knows_that_nothing_stands_beside_the_robot_is_told_the_same_by_fewer_rays(engine):
+    rng = np.random.default_rng(7)
+    probed, fewer = 0, []
+    for _ in range(6):
+        obstacles = [
+            cylinder(*rng.uniform(0, 6, 2), rng.choice([0.05, 0.2, 0.4]))
+            if rng.random() < 0.5
+            else box(*rng.uniform(0, 6, 2), *rng.uniform(0.05, 1.0, 2), rng.uniform(-3, 3))
+            for _ in range(60)
+        ]
+        field = Field.of(obstacles, FIELD)
+        world = World(obstacles, FIELD, engine=engine)
+        for origin in rng.uniform(0.2, 5.8, (200, 2)).tolist():
+            apart = field.clearance([origin])[0] - ROBOT_RADIUS
+            if apart < 0.0:
+                continue
+            headings = rng.uniform(-math.pi, math.pi, 4).tolist()
+            with counting_rays(world) as cast:
+                told = world.sense(origin, headings, apart=apart)
+            probed += cast[0] == 4 * (2 * SPREAD.size + 2)
+            fewer += [apart] * (cast[0] == 4 * 2 * SPREAD.size)
+            assert told == world.sense(origin, headings)
+    assert probed > 20  # near enough to something for a probe
+    assert len(fewer) > 200
+    assert min(fewer) < 2.0 * SENSOR_MARGIN
+
+
+@contextmanager
+def counting_rays(world):
+    api, cast = world._api, [0]
+
+    class Counting:
+        def __getattr__(self, name):
+            return getattr(api, name)
+
+        def rayTestBatch(self, starts, *rest, **named):  # noqa: N802
+            cast[0] += len(starts)
+            return api.rayTestBatch(starts, *rest, **named)
+
+    world._api = Counting()
+    yield cast
+    world._api = api
+
+
+def test_a_ray_meets_a_face_up_to_its_very_ends(engine):
+    # A face is one triangle, as wide as the face at the height of the rays alone.
+    corners = [(2.5, 2.5), (3.5, 2.5), (3.5, 3.5), (2.5, 3.5)]
+    world = World([box(3.0, 3.0, 1.0, 1.0)], FIELD, engine=engine)
+    for x, y in corners:
+        for aside in (1e-6, 1e-3, 0.5, 1.0 - 1e-3, 1.0 - 1e-6):
+            along = 2.5 + aside
+            start = (along, y + math.copysign(0.5, y - 3.0))
+            [down] = world.look(start, [math.copysign(math.pi / 2, 3.0 - y)])
+            assert down == pytest.approx(0.5, abs=1e-6)
+            start = (x + math.copysign(0.5, x - 3.0), along)
+            [across] = world.look(start, [math.pi if x > 3.0 else 0.0])
+            assert across == pytest.approx(0.5, abs=1e-6)
 
 
 def test_ten_thousand_obstacles_are_all_sensed(engine):

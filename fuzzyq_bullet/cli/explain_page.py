@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from rich import box
@@ -14,9 +15,11 @@ from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.settings import RoutineSettings, WeightsSettings
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fuzzyq_bullet.fuzzy import FuzzyController, Inference, RuleTable
     from fuzzyq_bullet.fuzzy.rules import Rule
-    from fuzzyq_bullet.fuzzy.sets import Floats, Variable
+    from fuzzyq_bullet.fuzzy.sets import Variable
 
 FIRES = 0.01
 """Gaussians never reach 0, so every rule fires a little; below this a rule does not count."""
@@ -40,8 +43,8 @@ def as_dict(
         "difference": difference,
         "table": rules,
         "samples": controller.samples,
-        "near": dict(zip(base.row.labels, inference.near.tolist(), strict=True)),
-        "side": dict(zip(base.column.labels, inference.side.tolist(), strict=True)),
+        "near": dict(zip(base.row.labels, inference.near, strict=True)),
+        "side": dict(zip(base.column.labels, inference.side, strict=True)),
         "rules": [
             {
                 base.row.name: rule.row,
@@ -49,7 +52,7 @@ def as_dict(
                 **dict(zip((output.name for output in base.outputs), rule.then, strict=True)),
                 "strength": strength,
             }
-            for strength, rule in _firing(controller, inference.rules)
+            for strength, rule in _firing(controller, inference)
         ],
         "turn": inference.turn,
         "stride": inference.stride,
@@ -94,9 +97,9 @@ def as_page(
     )
 
 
-def _firing(controller: FuzzyController, strengths: Floats) -> list[tuple[float, Rule]]:
+def _firing(controller: FuzzyController, inference: Inference) -> list[tuple[float, Rule]]:
     """Pair the rules with their strengths, strongest first, ties in the order of the table."""
-    pairs = zip(strengths.ravel().tolist(), controller.base, strict=True)
+    pairs = zip(chain.from_iterable(inference.rules), controller.base, strict=True)
     return sorted(pairs, key=lambda pair: -pair[0])
 
 
@@ -110,9 +113,9 @@ def _roomier(difference: float) -> str:
     return "more room on the " + ("left" if difference > 0 else "right")
 
 
-def _memberships(title: str, variable: Variable, degrees: Floats) -> Table:
+def _memberships(title: str, variable: Variable, degrees: Sequence[float]) -> Table:
     grid = Table.grid(padding=(0, 1))
-    for one, degree in zip(variable.sets, degrees.tolist(), strict=True):
+    for one, degree in zip(variable.sets, degrees, strict=True):
         style = "cyan" if degree >= FIRES else "dim"
         grid.add_row(
             Text(one.label, style="bold" if degree >= FIRES else "dim"),
@@ -136,14 +139,12 @@ def _bar(share: float, width: int, style: str) -> Text:
 
 def _rule_table(controller: FuzzyController, inference: Inference, *, folded: bool) -> Table:
     base = controller.base
-    strongest = float(inference.rules.max())
+    strongest = max(map(max, inference.rules))
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1))
     table.add_column("d \\ Df", style="bold", overflow="fold")
     for label in base.column.labels:
         table.add_column(label, overflow="fold")
-    for label, cells, strengths in zip(
-        base.row.labels, base.cells, inference.rules.tolist(), strict=True
-    ):
+    for label, cells, strengths in zip(base.row.labels, base.cells, inference.rules, strict=True):
         table.add_row(
             label,
             *(
@@ -165,7 +166,8 @@ def _cell(labels: tuple[str, ...], strength: float, strongest: float, *, folded:
 
 
 def _sentences(controller: FuzzyController, inference: Inference, width: int) -> Table:
-    firing = [pair for pair in _firing(controller, inference.rules) if pair[0] >= FIRES]
+    pairs = _firing(controller, inference)
+    firing = [pair for pair in pairs if pair[0] >= FIRES]
     halves = [_sentence(controller, inference, rule) for _, rule in firing]
     # A line that must be broken is broken before its "then", and then all are.
     room = width - len("0.00 ")
@@ -173,7 +175,7 @@ def _sentences(controller: FuzzyController, inference: Inference, width: int) ->
     grid = Table.grid(padding=(0, 1))
     for (strength, _), pair in zip(firing, halves, strict=True):
         grid.add_row(Text(f"{strength:.2f}", style="bold cyan"), joint.join(pair))
-    silent = inference.rules.size - len(firing)
+    silent = len(pairs) - len(firing)
     grid.add_row("", Text(f"The other {silent} rules stay below {FIRES}.", style="dim"))
     return grid
 

@@ -6,6 +6,7 @@ import math
 
 from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
+from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.sight import BESIDE, SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
@@ -28,7 +29,8 @@ class KinematicDriver:
         self._field = field = world.field
         self._goal = scenario.goal
         self._step_time = longest_step_time(scenario.robot)
-        self._apart = Apart(lambda x, y: float(field.clearance([[x, y]])[0]) - ROBOT_RADIUS)
+        near = Nearby(field)
+        self._apart = Apart(lambda x, y: near.clearance(x, y) - ROBOT_RADIUS)
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from fuzzyq_bullet.physics.sight import Sight
-from fuzzyq_bullet.planning.base import Floats
 
 
 class CastOnce:
@@ -25,11 +22,11 @@ class CastOnce:
         self._apart = apart
         self._known: dict[float, float] = {}
 
-    def __call__(self, headings: Sequence[float]) -> Floats:
-        """Return the free distance (m) along world headings (rad), shape (K,)."""
+    def __call__(self, headings: Sequence[float]) -> list[float]:
+        """Return the free distance (m) along each of the world headings (rad)."""
         known = self._known
         missing = [heading for heading in dict.fromkeys(headings) if heading not in known]
         if missing:
             told = self._world.sense(self._origin, missing, apart=self._apart)
             known.update(zip(missing, told, strict=True))
-        return np.array([known[heading] for heading in headings])
+        return [known[heading] for heading in headings]

@@ -7,11 +7,12 @@ from collections.abc import Callable
 
 from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick
+from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.robot import wheel_commands
-from fuzzyq_bullet.physics.world import CLEARANCE_RANGE, SENSOR_MARGIN, SENSOR_RANGE, World
+from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
 from fuzzyq_bullet.planning.base import Decision, Motion, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
@@ -25,6 +26,9 @@ TICK_TIME = TICK_STEPS * TIME_STEP
 DECISION_TICKS = 2
 """Ticks between two decisions: one every 0.3 s."""
 
+SLACK = 0.002
+"""By how much bodies may be nearer to each other in the physics than they are drawn (m): they have
+a margin, and the robot may lean."""
 RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05
 
@@ -46,8 +50,8 @@ class WheelsDriver:
             margin=SENSOR_MARGIN,
         )
         self._pilot = Pilot(scenario.robot, TICK_TIME)
-        # Beyond its range the world only tells that nothing is nearer.
-        self._apart = Apart(lambda x, y: min(world.clearance(x, y), CLEARANCE_RANGE))
+        near = Nearby(world.field)
+        self._apart = Apart(lambda x, y: near.clearance(x, y) - ROBOT_RADIUS - SLACK)
         self._twist = STILL
         self.steps = 0
         self.collision: Collision | None = None

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from fuzzyq_bullet.fuzzy.inference import ProductInference
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.rules import RuleBase
-    from fuzzyq_bullet.fuzzy.sets import Floats
 
 
-@dataclass(frozen=True, slots=True)
-class Inference:
-    """One inference, with everything that led to it.
+class Inference(NamedTuple):
+    """One inference, with everything that led to it, in plain numbers.
 
     Attributes:
         near: Memberships of the distance in each of its labels, shape (5,) in the paper.
@@ -25,9 +22,9 @@ class Inference:
         stride: N_s, the scale of the step.
     """
 
-    near: Floats
-    side: Floats
-    rules: Floats
+    near: tuple[float, ...]
+    side: tuple[float, ...]
+    rules: tuple[tuple[float, ...], ...]
     turn: float
     stride: float
 

@@ -7,7 +7,7 @@ hundred plain numbers, then three operations on arrays of a thousand.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,11 +15,27 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fuzzyq_bullet.fuzzy.rules import RuleBase
-    from fuzzyq_bullet.fuzzy.sets import Floats
 
 LEAST_SAMPLES = 3
 _NO_AREA = 1e-300
 """Below this, sums of memberships lose their digits, and a centroid would be noise."""
+
+
+class Fired(NamedTuple):
+    """One inference, in plain numbers.
+
+    Attributes:
+        row: Memberships of the row variable, shape (R,).
+        column: Memberships of the column variable, shape (C,).
+        rules: Firing strengths of the rules (Eq. 2), shape (R, C).
+        values: For each output the centroid (Eq. 22), or its fallback where the aggregate is zero
+            all over.
+    """
+
+    row: tuple[float, ...]
+    column: tuple[float, ...]
+    rules: tuple[tuple[float, ...], ...]
+    values: tuple[float, ...]
 
 
 class ProductInference:
@@ -98,7 +114,7 @@ class ProductInference:
                 self._concluding.append(labels[name])
                 self._sampled[slot, k] = output.memberships(u)[output.labels.index(name)]
 
-    def infer(self, x: float, y: float) -> tuple[Floats, Floats, Floats, tuple[float, ...]]:
+    def infer(self, x: float, y: float) -> Fired:
         """Fuzzify, fire the rules, aggregate and take the centroids.
 
         Args:
@@ -106,15 +122,14 @@ class ProductInference:
             y: Value of the column variable, within its domain.
 
         Returns:
-            Memberships of ``x``, shape (R,); of ``y``, shape (C,); firing strengths of the rules
-            (Eq. 2), shape (R, C); and one centroid (Eq. 22) for each output, or its fallback where
-            the aggregate is zero all over. The arrays are the caller's own.
+            What fired, and how strongly.
         """
         # Plain numbers: for so few of them an array costs more than it saves.
         exp = math.exp
-        row = [exp((x - center) * (x - center) * scale) for center, scale in self._row_sets]
-        column = [exp((y - center) * (y - center) * scale) for center, scale in self._column_sets]
-        strengths = [one * other for one in row for other in column]
+        row = tuple([exp((x - at) * (x - at) * scale) for at, scale in self._row_sets])
+        column = tuple([exp((y - at) * (y - at) * scale) for at, scale in self._column_sets])
+        rules = tuple([tuple([one * other for other in column]) for one in row])
+        strengths = [strength for rule_row in rules for strength in rule_row]
 
         # Eqs. 3 and 4. Rules that conclude the same set differ only by a factor, so the largest
         # of them is that set times the largest strength.
@@ -131,5 +146,4 @@ class ProductInference:
                 )
             ]
         )
-        rules = np.array(strengths).reshape(len(row), len(column))
-        return np.array(row), np.array(column), rules, values
+        return Fired(row, column, rules, values)

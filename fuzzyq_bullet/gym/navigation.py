@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fuzzyq_bullet.drives.pilot import Twist
 from fuzzyq_bullet.gym.env import EpisodeEnv
 from fuzzyq_bullet.gym.sight import goal_seen, motion_seen
@@ -86,8 +84,8 @@ class NavigationEnv(EpisodeEnv):
         headings = [about + aside for about in (bearing, now.heading) for aside in fan]
         lengths = now.sense(headings)
         self._now: Observation = now
-        self._lines, self._lengths = np.array(headings[:3]), lengths[:3]
-        free = dict(zip(_LEAST, (lengths / now.range).tolist(), strict=False))
+        self._lines, self._lengths = headings[:3], lengths[:3]
+        free = dict(zip(_LEAST, (length / now.range for length in lengths), strict=False))
         return {**free, **goal_seen(now), **motion_seen(now, self._robot)}
 
     def _act(self, episode: Episode, first: float, second: float) -> None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fuzzyq_bullet.gym.env import EpisodeEnv
 from fuzzyq_bullet.gym.sight import goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
@@ -98,7 +96,7 @@ class WeightsEnv(EpisodeEnv):
     def _see(self, episode: Episode) -> dict[str, float]:
         now = self._now = episode.observe()
         seen = self._situation = self._planner.sense(now)
-        left, middle, right = (seen.lengths / now.range).tolist()
+        left, middle, right = (length / now.range for length in seen.lengths)
         most = now.range / STEP_UNIT
         return {
             "left": left,
@@ -122,6 +120,6 @@ class WeightsEnv(EpisodeEnv):
             heading=self._now.heading,
             step=0.0,
             mode=self._planner.mode,
-            lines=np.array(self._situation.lines),
+            lines=self._situation.lines,
             lengths=self._situation.lengths,
         )

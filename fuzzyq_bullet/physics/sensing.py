@@ -3,6 +3,9 @@
 A ray against a triangle mesh costs a fifth of a ray against the same convex shapes. Only rays meet
 these meshes; the robot's body meets the exact shapes of ``physics.static``. Round faces become
 polygons around the circle, so that a distance is never told longer than it is.
+
+All rays run level, at one height. So a face needs no more than one triangle, that stands on this
+height and is there as wide as the face: half as many as would fill it, and a faster search.
 """
 
 from __future__ import annotations
@@ -59,17 +62,15 @@ def _outline(obstacle: Cylinder | Box) -> Outline:
 
 
 def _mesh(outlines: Sequence[Outline]) -> Mesh:
-    """Return the upright faces over several closed outlines as one mesh."""
+    """Return the upright faces over several closed outlines as one mesh, as they are at z = 0."""
     ground = np.concatenate(outlines)
     count = len(ground)
     following = np.arange(1, count + 1)
     ends = np.cumsum([len(outline) for outline in outlines])
     following[ends - 1] = ends - [len(outline) for outline in outlines]  # close each outline
     here = np.arange(count)
-    # Vertex i lies on the ground, vertex i + count above it; two triangles for every side.
-    triangles = np.column_stack(
-        [here, following, here + count, here + count, following, following + count]
-    )
+    # Vertex i lies at z = 0, vertex i + count above it.
+    triangles = np.column_stack([here, following, here + count])
     vertices = np.vstack(
         [
             np.column_stack([ground, np.zeros(count)]),

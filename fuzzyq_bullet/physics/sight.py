@@ -139,5 +139,7 @@ class Sight:
             vertex.clear()
         vertices.clear()
         triangles.clear()
-        body: int = self._api.createMultiBody(0.0, shape, physicsClientId=client)
+        body: int = self._api.createMultiBody(
+            0.0, shape, basePosition=(0.0, 0.0, BODY_HEIGHT), physicsClientId=client
+        )
         return body

@@ -10,6 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
+Numbers: TypeAlias = Sequence[float] | Floats
+"""A few numbers, in whatever holds them: plain ones are the faster for so few."""
+Table: TypeAlias = Sequence[Sequence[float]] | Floats
 Mode: TypeAlias = Literal["routine", "breakout", "following"]
 MODES: tuple[Mode, ...] = get_args(Mode)
 
@@ -18,8 +21,10 @@ STEP_UNIT = 0.2
 LONGEST_STRIDE = 2.0
 """Upper end of N_s: the longest step is this many S_p."""
 
-RangeSensor: TypeAlias = Callable[[Sequence[float]], Floats]
-"""Distances (m) along world headings (rad), in one batch."""
+RangeSensor: TypeAlias = Callable[[Sequence[float]], Sequence[float]]
+"""Free distances (m) along world headings (rad), one for each, in one batch."""
+ThinRays: TypeAlias = Callable[[Sequence[float]], Floats]
+"""Distances (m) along world headings (rad), shape (K,), in one batch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,15 +85,12 @@ class Observation:
     range: float
     radius: float
     sense: RangeSensor
-    look: RangeSensor
+    look: ThinRays
     motion: Motion | None = None
 
 
-_NO_LINES = np.full(3, np.nan)
-_NO_SETS = np.full(5, np.nan)
-_NO_RULES = np.full((5, 5), np.nan)
-for _blank in (_NO_LINES, _NO_SETS, _NO_RULES):
-    _blank.flags.writeable = False
+_NAN = float("nan")
+_NO_SETS = (_NAN,) * 5
 
 
 class Decision(NamedTuple):
@@ -123,19 +125,19 @@ class Decision(NamedTuple):
     step: float
     reach: float = float("inf")
     mode: Mode = "routine"
-    lines: Floats = _NO_LINES
-    lengths: Floats = _NO_LINES
-    distance: float = float("nan")
-    difference: float = float("nan")
-    near: Floats = _NO_SETS
-    side: Floats = _NO_SETS
-    rules: Floats = _NO_RULES
-    turn: float = float("nan")
-    stride: float = float("nan")
-    weights: tuple[float, float] = (float("nan"), float("nan"))
-    breakout_at: float = float("nan")
-    guard: float = float("nan")
-    target: tuple[float, float] = (float("nan"), float("nan"))
+    lines: Numbers = (_NAN,) * 3
+    lengths: Numbers = (_NAN,) * 3
+    distance: float = _NAN
+    difference: float = _NAN
+    near: Numbers = _NO_SETS
+    side: Numbers = _NO_SETS
+    rules: Table = (_NO_SETS,) * 5
+    turn: float = _NAN
+    stride: float = _NAN
+    weights: tuple[float, float] = (_NAN, _NAN)
+    breakout_at: float = _NAN
+    guard: float = _NAN
+    target: tuple[float, float] = (_NAN, _NAN)
     hopeless: bool = False
 
 

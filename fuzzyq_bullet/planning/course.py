@@ -77,7 +77,7 @@ class Course:
         ahead = points[:AHEAD]
         ways = [math.dist(here, point) for point in ahead]
         headings = [math.atan2(y - here[1], x - here[0]) for x, y in ahead]
-        free = observation.sense(headings).tolist()
+        free = observation.sense(headings)
         seen = [k for k in range(len(ahead)) if free[k] >= min(ways[k], observation.range)]
         target = seen[-1] if seen else 0
         heading, way = headings[target], ways[target]
@@ -114,14 +114,14 @@ def _must_aim(observation: Observation, heading: float, way: float) -> bool:
     if way <= BESIDE and turn > ASKEW:
         return True
     beside = observation.sense([heading - NARROW, heading + NARROW])
-    return bool(beside.min() < min(way, 2.0 * LEAST))
+    return min(beside) < min(way, 2.0 * LEAST)
 
 
 def _aside(observation: Observation, heading: float, enough: float) -> Leg | None:
     """Return the least turn from a heading that is free for long enough, if one is."""
     for first in range(0, len(ASIDE), AT_ONCE):
         headings = [heading + turn for turn in ASIDE[first : first + AT_ONCE]]
-        for other, length in zip(headings, observation.sense(headings).tolist(), strict=True):
+        for other, length in zip(headings, observation.sense(headings), strict=True):
             if length >= enough:
                 return Leg(other, enough)
     return None

@@ -13,10 +13,8 @@ from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
 
-import numpy as np
-
 from fuzzyq_bullet.learning import Expected, Policy, greedy
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Floats, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
 from fuzzyq_bullet.planning.settings import PolicySettings
 
 LINE_ANGLE = math.radians(45.0)
@@ -76,7 +74,7 @@ class Sight(NamedTuple):
     bearing: float
     to_goal: float
     lines: tuple[float, float, float]
-    lengths: Floats
+    lengths: Sequence[float]
     state: int
 
 
@@ -99,8 +97,7 @@ def sense(observation: Observation) -> Sight:
     to_goal = math.hypot(dx, dy)
     bearing = math.atan2(dy, dx)
     lines = (bearing + LINE_ANGLE, bearing, bearing - LINE_ANGLE)
-    lengths = observation.sense(lines)
-    left, middle, right = lengths.tolist()
+    left, middle, right = lengths = observation.sense(lines)
     counted = (left, math.inf if middle >= to_goal else middle, right)
     return Sight(bearing, to_goal, lines, lengths, state_of(counted))
 
@@ -110,7 +107,7 @@ def act(sight: Sight, action: int) -> Decision:
     return Decision(
         heading=sight.bearing + ACTIONS[action].turn,
         step=min(STEP, sight.to_goal),
-        lines=np.array(sight.lines),
+        lines=sight.lines,
         lengths=sight.lengths,
     )
 

@@ -57,7 +57,7 @@ class Escape:
         """
         here, goal = observation.position, observation.goal
         to_goal = math.dist(here, goal)
-        middle = float(routine.lengths[1])
+        middle = routine.lengths[1]
         enough = min(routine.breakout_at * STEP_UNIT, to_goal)
         if to_goal < self._nearest - NEARER:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
@@ -84,7 +84,7 @@ class Escape:
         if self._straight:
             # What ended the avoidance was this line: it is driven as promised, and the controller
             # has its turn again when the robot is nearer than ever before.
-            return routine._replace(heading=float(routine.lines[1]))
+            return routine._replace(heading=routine.lines[1])
         return routine
 
     def _look(self, observation: Observation) -> None:
@@ -129,7 +129,7 @@ class Escape:
 
 def _break_out(routine: Decision, observation: Observation, middle: float) -> Decision:
     """Take the smaller turn, left or right, that is free (4.2, Fig. 6)."""
-    bearing = float(routine.lines[1])
+    bearing = routine.lines[1]
     # A stalled robot may have its line free for a while: it is what stands there that counts.
     enough = max(ENOUGH, middle + 0.25 * STEP_UNIT) if middle < observation.range else ENOUGH
     tie = 1 if routine.difference >= 0.0 else -1

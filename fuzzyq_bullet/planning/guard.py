@@ -25,7 +25,7 @@ def guarded(decision: Decision, observation: Observation) -> Decision:
     """
     if observation.motion is not None:
         return _guarded_on_wheels(decision, observation, observation.motion)
-    [free] = observation.sense([decision.heading]).tolist()
+    [free] = observation.sense([decision.heading])
     return decision._replace(step=_usable(free, decision.step), guard=free)
 
 
@@ -74,15 +74,14 @@ def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Mot
 
 def _free(decision: Decision, observation: Observation, headings: list[float]) -> list[float]:
     """Return the free distance along each heading, from the lines already cast where one serves."""
-    lines, lengths = decision.lines.tolist(), decision.lengths.tolist()
     known: dict[float, float] = {}
     for heading in headings:
-        for line, length in zip(lines, lengths, strict=True):
+        for line, length in zip(decision.lines, decision.lengths, strict=True):
             if abs(wrap_angle(line - heading)) <= SAME:
                 known[heading] = length
     missing = [heading for heading in headings if heading not in known]
     if missing:
-        known.update(zip(missing, observation.sense(missing).tolist(), strict=True))
+        known.update(zip(missing, observation.sense(missing), strict=True))
     return [known[heading] for heading in headings]
 
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from fuzzyq_bullet.fuzzy.controller import Inference
 from fuzzyq_bullet.fuzzy.paper import paper_controller
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Floats, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
 from fuzzyq_bullet.planning.settings import RoutineSettings
 
 
@@ -31,7 +30,7 @@ class Situation:
     bearing: float
     to_goal: float
     lines: tuple[float, float, float]
-    lengths: Floats
+    lengths: Sequence[float]
     distance: float
     difference: float
     clear: bool
@@ -60,8 +59,7 @@ class Routine:
         bearing = math.atan2(dy, dx)
         alpha = settings.line_angle
         lines = (bearing + alpha, bearing, bearing - alpha)
-        lengths = observation.sense(lines)
-        left, middle, right = lengths.tolist()
+        left, middle, right = lengths = observation.sense(lines)
 
         clear = middle >= min(observation.range, to_goal)
         if clear:
@@ -91,7 +89,7 @@ class Routine:
         return Decision(
             heading=situation.bearing + w2 * inferred.turn * self._settings.turn_unit,
             step=min(w1 * inferred.stride * STEP_UNIT, situation.to_goal),
-            lines=np.array(situation.lines),
+            lines=situation.lines,
             lengths=situation.lengths,
             distance=situation.distance,
             difference=situation.difference,

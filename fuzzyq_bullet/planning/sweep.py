@@ -79,7 +79,7 @@ def eased(sense: RangeSensor, found: Found, side: int, enough: float) -> Found:
     if found.blocked is None:
         return found
     headings = [found.heading + side * ease for ease in EASE]
-    for heading, free in zip(headings, sense(headings).tolist(), strict=True):
+    for heading, free in zip(headings, sense(headings), strict=True):
         if free >= min(enough, found.free):
             return found._replace(heading=heading, free=free)
     return found
@@ -91,5 +91,5 @@ def _rays(
     """Yield how far the ray is turned and its free distance, casting only as many as are asked."""
     for begin in range(0, count, AT_ONCE):
         turns = [first + k * step for k in range(begin, min(begin + AT_ONCE, count))]
-        lengths = sense([start + side * turn for turn in turns]).tolist()
+        lengths = sense([start + side * turn for turn in turns])
         yield from zip(turns, lengths, strict=True)

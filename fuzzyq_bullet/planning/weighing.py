@@ -51,7 +51,7 @@ def features_of(situation: Situation) -> Features:
     """
     if situation.clear:
         return Features.one_hot(0)
-    big, small, even, as_small, as_big = situation.inferred.rules.T
+    big, small, even, as_small, as_big = np.array(situation.inferred.rules).T
     strengths = np.stack([even, small + as_small, big + as_big], axis=1).ravel()
     total = float(strengths.sum())
     uniform = np.full(strengths.size, 1.0 / strengths.size)
