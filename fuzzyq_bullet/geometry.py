@@ -22,7 +22,7 @@ _GRAZE = 1e-9
 """A path that would cut less deep than this (m) into something round only grazes it."""
 _PARALLEL = 1e-12
 """A direction closing in on a flat face slower than this (m per m) runs along it: cos(π/2) ≠ 0."""
-_TOGETHER = 32
+_TOGETHER = 48
 """Points whose clearance is told at once; beside each other they share what is near them."""
 _CHUNK = 1_000_000
 """Most distances held in memory at once by ``Field.clearance``."""

@@ -30,7 +30,6 @@ PLANNERS = '''\
 """What breaks robots, for tests: each by the name of a planner."""
 
 import math, os, time
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -66,7 +65,7 @@ class Bad:
             raise ValueError("no\\nway")
         elif self.how == "blind":
             nothing = lambda headings: np.full(len(headings), seen.range)
-            return self.good.decide(replace(seen, sense=nothing, look=nothing))
+            return self.good.decide(seen._replace(sense=nothing, look=nothing))
         elif self.how == "no-brakes":
             return self.good.decide(seen)
         (gx, gy), (x, y) = seen.goal, seen.position

@@ -128,12 +128,12 @@ def test_states_and_headings_are_mirrored_in_the_line_to_the_goal() -> None:
 
 
 def test_what_stands_behind_the_goal_is_not_in_the_way() -> None:
-    near = replace(_facing((0.5, 0.3, 0.5)), goal=(0.29, 0.0))
-    far = replace(near, goal=(0.31, 0.0))
+    near = _facing((0.5, 0.3, 0.5))._replace(goal=(0.29, 0.0))
+    far = near._replace(goal=(0.31, 0.0))
     assert STATE_NAMES[sense(near).state] == "left middling, ahead free, right middling"
     assert STATE_NAMES[sense(far).state] == "left middling, ahead near, right middling"
     assert act(sense(near), STRAIGHT).step == STEP_UNIT
-    assert act(sense(replace(near, goal=(0.0, 0.12))), STRAIGHT).step == pytest.approx(0.12)
+    assert act(sense(near._replace(goal=(0.0, 0.12))), STRAIGHT).step == pytest.approx(0.12)
 
 
 def _facing(lengths: tuple[float, float, float]) -> Observation:

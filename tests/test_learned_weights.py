@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,7 +90,7 @@ def test_the_strongest_feature_is_called_by_what_there_is() -> None:
     assert strongest(0.1, 0.0) == "VN even"
     assert strongest(2.5, -2.2) == "M small"
     assert strongest(5.0, 5.0) == "VF big"
-    clear = features_of(replace(situation(5.0, 0.0), clear=True))
+    clear = features_of(situation(5.0, 0.0)._replace(clear=True))
     assert [STATE_NAMES[index] for index in clear.indices] == ["clear"]
 
 

@@ -1,8 +1,7 @@
-"""The typed edge around PyBullet: an owned DIRECT client, its settings, its raw tuples named."""
+"""The typed edge around PyBullet: an owned DIRECT client and its settings."""
 
 from __future__ import annotations
 
-import math
 import os
 import sys
 import tempfile
@@ -37,19 +36,6 @@ TIME_STEP = 1.0 / 240.0
 """Length of one physics step (s)."""
 SOLVER_ITERATIONS = 50
 GRAVITY = -9.81
-
-
-class Pose(NamedTuple):
-    """Position (m) and orientation (quaternion x, y, z, w) of a body's centre of mass."""
-
-    position: tuple[float, float, float]
-    orientation: tuple[float, float, float, float]
-
-    @property
-    def yaw(self) -> float:
-        """Turn about the z axis (rad)."""
-        x, y, z, w = self.orientation
-        return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 class Contact(NamedTuple):

@@ -89,10 +89,11 @@ class LineBundle:
                 for ray in (-2, -1):  # the outermost; its probe comes as far after the last
                     if fractions[first + count + 2 + ray] < 1.0:
                         ended[ray] = 1.0
-            least = self._reach
-            for fraction, length, rim in zip(ended, self._lengths, self._rims, strict=True):
-                # A free line is exactly as long as the range, not rounded.
-                if fraction < 1.0 and fraction * length - rim < least:
-                    least = fraction * length - rim
-            travels.append(least if least > 0.0 else 0.0)
+            # A free line is exactly as long as the range, not rounded.
+            met = [
+                fraction * length - rim
+                for fraction, length, rim in zip(ended, self._lengths, self._rims, strict=True)
+                if fraction < 1.0
+            ]
+            travels.append(max(0.0, min(self._reach, *met)) if met else self._reach)
         return travels

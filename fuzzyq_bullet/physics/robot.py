@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from fuzzyq_bullet.physics.engine import Engine, Pose
+from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.resources import asset
 
 WHEEL_RADIUS = 0.05
@@ -87,14 +87,14 @@ class Robot:
         """Return the robot's planar state."""
         # Arguments by position, here and below: keywords cost as much as some of these calls.
         client = self._engine.client
-        pose = Pose(*self._api.getBasePositionAndOrientation(self.body, client))
+        (x, y, _), (i, j, k, w) = self._api.getBasePositionAndOrientation(self.body, client)
         (vx, vy, _), (_, _, turn_rate) = self._api.getBaseVelocity(self.body, client)
-        heading = pose.yaw
+        heading = math.atan2(2.0 * (w * k + i * j), 1.0 - 2.0 * (j * j + k * k))
         cos, sin = math.cos(heading), math.sin(heading)
         # PyBullet tells the centre of mass, which lies a little towards the caster.
         return RobotState(
-            pose.position[0] - self._mass_x * cos,
-            pose.position[1] - self._mass_x * sin,
+            x - self._mass_x * cos,
+            y - self._mass_x * sin,
             heading,
             vx * cos + vy * sin,
             turn_rate,

@@ -54,8 +54,7 @@ class Motion:
         return speed * speed / (2.0 * self.acceleration)
 
 
-@dataclass(frozen=True, slots=True)
-class Observation:
+class Observation(NamedTuple):
     """All a planner may know at one instant. It cannot see the map.
 
     Attributes:

@@ -27,6 +27,8 @@ MARGIN = 1.0
 """How far the grid reaches beyond everything known (m)."""
 _ALONG = np.linspace(0.0, 1.0, 9)[:, None]
 _MOVES = ((1, 0), (0, 1), (1, 1), (1, -1))
+_BITS = np.unpackbits(np.arange(256, dtype=np.uint8)[:, None], axis=1).sum(axis=1, dtype=np.int32)
+"""How many bits are set in each byte."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,8 +153,11 @@ def _moves(free: NDArray[np.bool_], cell: float) -> csr_matrix:
         can[(*here, 2 * k)] = can[(*there, 2 * k + 1)] = both
         steps += [dx * rows + dy, -dx * rows - dy]
         lengths += [cell * math.hypot(dx, dy)] * 2
-    at, move = np.divmod(np.flatnonzero(can).astype(np.int32), np.int32(len(steps)))
+    # Eight moves from each cell: eight bits.
     ends = np.zeros(free.size + 1, dtype=np.int32)
-    np.bincount(at, minlength=free.size).cumsum(out=ends[1:])
-    targets = at + np.array(steps, dtype=np.int32)[move]
+    _BITS[np.packbits(can)].cumsum(out=ends[1:])
+    targets = np.flatnonzero(can).astype(np.int32)
+    move = targets & np.int32(7)
+    targets >>= 3
+    targets += np.array(steps, dtype=np.int32)[move]
     return csr_matrix((np.array(lengths)[move], targets, ends), shape=(free.size, free.size))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from fuzzyq_bullet.fuzzy.controller import Inference
 from fuzzyq_bullet.fuzzy.paper import paper_controller
@@ -12,8 +12,7 @@ from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
 from fuzzyq_bullet.planning.settings import RoutineSettings
 
 
-@dataclass(frozen=True, slots=True)
-class Situation:
+class Situation(NamedTuple):
     """What the detection lines and the controller say, before any weight is put on it.
 
     Attributes:
