@@ -71,15 +71,16 @@ class Pilot:
 
 def ramp(now: Twist, wanted: Twist, robot: Robot, dt: float) -> Twist:
     """Return the twist after ``dt`` seconds of moving towards the wanted one within the limits."""
-    return Twist(
-        _towards(now.speed, wanted.speed, robot.acceleration * dt),
-        _towards(now.turn_rate, wanted.turn_rate, robot.turn_acceleration * dt),
-    )
-
-
-def _towards(value: float, goal: float, most: float) -> float:
-    if goal > value + most:
-        return value + most
-    if goal < value - most:
-        return value - most
-    return goal
+    # Written out: there are 80 commands in a simulated second.
+    (speed, turn_rate), (fast, quick) = now, wanted
+    most = robot.acceleration * dt
+    if fast > speed + most:
+        fast = speed + most
+    elif fast < speed - most:
+        fast = speed - most
+    most = robot.turn_acceleration * dt
+    if quick > turn_rate + most:
+        quick = turn_rate + most
+    elif quick < turn_rate - most:
+        quick = turn_rate - most
+    return Twist(fast, quick)

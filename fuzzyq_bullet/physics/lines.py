@@ -73,7 +73,7 @@ class LineBundle:
                         points.append((x - side * radius * sin, y + side * radius * cos, z))
         return starts, ends
 
-    def travel(self, fractions: Sequence[float], *, probes: bool) -> list[float]:
+    def travel(self, fractions: list[float], *, probes: bool) -> list[float]:
         """Return the free travel (m) along each of the K headings, in [0, reach].
 
         Args:
@@ -81,19 +81,22 @@ class LineBundle:
                 ``rays``.
             probes: Whether there are probes among them.
         """
-        count = len(self._lengths)
+        count, lengths, rims = len(self._lengths), self._lengths, self._rims
         travels = []
         for first in range(0, len(fractions), count + 2 if probes else count):
-            ended = list(fractions[first : first + count])
+            ended = fractions[first : first + count]
             if probes:
                 for ray in (-2, -1):  # the outermost; its probe comes as far after the last
                     if fractions[first + count + 2 + ray] < 1.0:
                         ended[ray] = 1.0
-            # A free line is exactly as long as the range, not rounded.
-            met = [
-                fraction * length - rim
-                for fraction, length, rim in zip(ended, self._lengths, self._rims, strict=True)
-                if fraction < 1.0
-            ]
-            travels.append(max(0.0, min(self._reach, *met)) if met else self._reach)
+            least = self._reach
+            if min(ended) < 1.0:
+                # A free line is exactly as long as the range, not rounded.
+                met = [
+                    fraction * length - rim
+                    for fraction, length, rim in zip(ended, lengths, rims, strict=True)
+                    if fraction < 1.0
+                ]
+                least = max(0.0, min(least, *met))
+            travels.append(least)
         return travels

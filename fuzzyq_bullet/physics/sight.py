@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from operator import itemgetter
 from typing import TypeVar
 
 import numpy as np
@@ -23,6 +24,8 @@ SENSOR_MARGIN = 0.02
 """How much wider than the robot a detection line is, on either side (m)."""
 
 _FACES = int(Group.FACES)
+_FRACTION = itemgetter(2)
+"""Of what PyBullet tells of a ray: where it ended as a part of its length."""
 BESIDE = SENSOR_MARGIN + 5.0 * ROUNDNESS
 """What is no nearer to the robot's body than this stands in no line's margin (m): the faces that
 rays meet reach a little beyond what is really there."""
@@ -77,7 +80,7 @@ class Sight:
         hits = self._api.rayTestBatch(
             start, stop, collisionFilterMask=_FACES, physicsClientId=self.engine.client
         )
-        return self._lines.travel([hit[2] for hit in hits], probes=probes)
+        return self._lines.travel(list(map(_FRACTION, hits)), probes=probes)
 
     def look(self, origin: tuple[float, float], headings: Sequence[float]) -> NDArray[np.float64]:
         """Return the distance (m) from ``origin`` to what stands there along each heading.
@@ -100,7 +103,7 @@ class Sight:
             collisionFilterMask=_FACES,
             physicsClientId=self.engine.client,
         )
-        return reach * np.array([hit[2] for hit in hits])
+        return reach * np.array(list(map(_FRACTION, hits)))
 
     def close(self) -> None:
         """Free the engine if it was made here."""

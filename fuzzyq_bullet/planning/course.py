@@ -34,8 +34,10 @@ ASIDE = tuple(
     for side in (1, -1)
 )
 """Turns away from the way seen before, where the robot cannot take it quite as it was seen."""
-AT_ONCE = 2
-"""How many of them are tried in one batch of rays; mostly one of the first is free."""
+SLIGHT = ASIDE[:2]
+"""Those that are tried together with the way itself: half the time one of them is free."""
+AT_ONCE = 6
+"""How many of the others are tried in one batch of rays."""
 LEAST = 0.5 * STEP_UNIT
 """What must be free to go aside (m)."""
 
@@ -77,7 +79,8 @@ class Course:
         ahead = points[:AHEAD]
         ways = [math.dist(here, point) for point in ahead]
         headings = [math.atan2(y - here[1], x - here[0]) for x, y in ahead]
-        free = observation.sense(headings)
+        slightly = [headings[0] + turn for turn in SLIGHT]
+        free = observation.sense([*headings, *slightly])[: len(headings)]
         seen = [k for k in range(len(ahead)) if free[k] >= min(ways[k], observation.range)]
         target = seen[-1] if seen else 0
         heading, way = headings[target], ways[target]
@@ -119,8 +122,9 @@ def _must_aim(observation: Observation, heading: float, way: float) -> bool:
 
 def _aside(observation: Observation, heading: float, enough: float) -> Leg | None:
     """Return the least turn from a heading that is free for long enough, if one is."""
-    for first in range(0, len(ASIDE), AT_ONCE):
-        headings = [heading + turn for turn in ASIDE[first : first + AT_ONCE]]
+    further = range(len(SLIGHT), len(ASIDE), AT_ONCE)
+    for turns in (SLIGHT, *(ASIDE[first : first + AT_ONCE] for first in further)):
+        headings = [heading + turn for turn in turns]
         for other, length in zip(headings, observation.sense(headings), strict=True):
             if length >= enough:
                 return Leg(other, enough)
