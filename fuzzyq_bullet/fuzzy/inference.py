@@ -7,12 +7,13 @@ hundred plain numbers, then three operations on arrays of a thousand.
 from __future__ import annotations
 
 import math
+from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from fuzzyq_bullet.fuzzy.rules import RuleBase
 
@@ -103,7 +104,7 @@ class ProductInference:
         ]
         # Where one output has fewer of them, one is repeated, which no maximum notices.
         most = max(map(len, concluded))
-        self._concluding: list[list[int]] = []
+        self._concluding: list[Callable[[list[float]], tuple[float, ...]]] = []
         self._sampled = np.empty((most, count, samples))
         self._shape = (most, count, 1)
         for slot in range(most):
@@ -111,7 +112,8 @@ class ProductInference:
                 zip(base.outputs, grids, concluded, strict=True)
             ):
                 name = list(labels)[slot % len(labels)]
-                self._concluding.append(labels[name])
+                # Twice the first, so that there are always several: of one there is no tuple.
+                self._concluding.append(itemgetter(labels[name][0], *labels[name]))
                 self._sampled[slot, k] = output.memberships(u)[output.labels.index(name)]
 
     def infer(self, x: float, y: float) -> Fired:
@@ -133,7 +135,7 @@ class ProductInference:
 
         # Eqs. 3 and 4. Rules that conclude the same set differ only by a factor, so the largest
         # of them is that set times the largest strength.
-        labels = [max([strengths[rule] for rule in rules]) for rules in self._concluding]
+        labels = [max(those_of(strengths)) for those_of in self._concluding]
         aggregate = np.maximum.reduce(np.array(labels).reshape(self._shape) * self._sampled)
 
         sums = aggregate.ravel().dot(self._moments).tolist()

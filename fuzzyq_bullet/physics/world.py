@@ -61,10 +61,11 @@ class World(Sight):
         # Arguments by position: this is the innermost loop, and keywords cost a microsecond.
         step, touching = self._api.stepSimulation, self._api.getContactPoints
         body, client = self.robot.body, self.engine.client
-        for taken in range(1, steps + 1):
+        surely = max(0, min(steps, apart))
+        for _ in range(surely):
             step(client)
-            if taken <= apart:
-                continue
+        for taken in range(surely + 1, steps + 1):
+            step(client)
             points = touching(body, -1, -1, -2, client)
             if points:
                 strongest = max(points, key=lambda point: point[9])

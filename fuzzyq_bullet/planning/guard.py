@@ -77,7 +77,7 @@ def _free(decision: Decision, observation: Observation, headings: list[float]) -
     known: dict[float, float] = {}
     for heading in headings:
         for line, length in zip(decision.lines, decision.lengths, strict=True):
-            if abs(wrap_angle(line - heading)) <= SAME:
+            if abs(math.remainder(line - heading, math.tau)) <= SAME:
                 known[heading] = length
     missing = [heading for heading in headings if heading not in known]
     if missing:
