@@ -6,15 +6,18 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fuzzyq_bullet.drives.apart import Apart
+from fuzzyq_bullet.drives.base import Tick
+from fuzzyq_bullet.drives.foresight import Foresight
 from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.physics.engine import TIME_STEP
 from fuzzyq_bullet.physics.sight import Sight
-from fuzzyq_bullet.scenario import Arena, Cylinder
+from fuzzyq_bullet.scenario import ROBOT_RADIUS, Arena, Cylinder, Robot
 
 FIELD = Field(np.array([[0.0, 0.0, 0.3], [1.5, 0.4, 0.2]]))
 
@@ -92,6 +95,39 @@ def test_where_nothing_stands_it_is_asked_once():
     apart = Apart(lambda x, y: measured.append((x, y)) or math.inf)
     assert [apart.by(x, 0.0, 1.0) for x in range(5)] == [math.inf] * 5
     assert len(measured) == 1
+
+
+@given(
+    st.floats(-0.2, 1.0),
+    st.floats(-3.0, 3.0),
+    st.floats(-1.9, 1.9),
+    st.floats(-1.9, 1.9),
+    st.floats(0.002, 0.149),
+    st.floats(-math.pi, math.pi),
+    st.floats(-math.pi, math.pi),
+    st.sampled_from([(0.1, 0.5), (0.1, 10.0), (1.0, 6.0)]),
+)
+@settings(max_examples=400)
+@example(1.0, 3.0, 0.0, 0.0, 0.149, 0.0, math.pi / 2, (0.1, 0.5))
+@example(1.0, 2.0, 0.0, 1.9, 0.149, 0.0, math.pi / 2, (0.1, 10.0))
+def test_nothing_is_foreseen_to_be_missed_that_the_robot_would_touch(
+    speed, turn_rate, faster, quicker, when, heading, beside, accelerations
+):
+    acceleration, turn_acceleration = accelerations
+    limits = Robot(acceleration=acceleration, turn_acceleration=turn_acceleration)
+    # An ideal drive with up to 1.9 times its accelerations, in steps of 1 ms or less.
+    count = math.ceil(when / 0.001)
+    dt = when / count
+    middles = (np.arange(count) + 0.5) * dt
+    speeds = speed + faster * limits.acceleration * middles
+    headings = heading + turn_rate * middles
+    headings += quicker * limits.turn_acceleration * middles**2 / 2.0
+    x, y = (speeds * np.cos(headings) * dt).sum(), (speeds * np.sin(headings) * dt).sum()
+    # A post that it then touches, wherever on its rim.
+    reach = ROBOT_RADIUS + 0.1
+    post = (x + reach * math.cos(beside), y + reach * math.sin(beside), 0.1)
+    tick = Tick(0.0, 0.0, 0.0, heading, speed, turn_rate, 0.0, 0.0)
+    assert Foresight(Field(np.array([post])), limits).free_steps(tick, 36) * TIME_STEP <= when
 
 
 def test_a_line_is_cast_once_and_told_as_often_as_asked():

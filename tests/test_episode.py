@@ -8,8 +8,10 @@ import pytest
 
 from fuzzyq_bullet import metrics
 from fuzzyq_bullet.drives.apart import Apart
-from fuzzyq_bullet.drives.wheels import WheelsDriver
-from fuzzyq_bullet.episode import run, run_in
+from fuzzyq_bullet.drives.foresight import Foresight
+from fuzzyq_bullet.drives.pilot import Twist
+from fuzzyq_bullet.drives.wheels import TICK_STEPS
+from fuzzyq_bullet.episode import Episode, run, run_in
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import result_of
@@ -166,9 +168,63 @@ def test_a_touch_is_noticed_at_once_from_wherever_the_robot_came(drive, away, mo
         hit = run_in(world, task, Onward()).collision
         assert hit is not None
         # The same with a look for contact after every step.
-        monkeypatch.setattr(WheelsDriver, "_steps_apart", lambda self, tick: 0)
+        monkeypatch.setattr(Foresight, "free_steps", lambda self, tick, steps: 0)
         monkeypatch.setattr(Apart, "by", lambda self, x, y, enough: 0.0)
         assert run_in(world, task, Onward()).collision == hit
+
+
+def test_while_no_touch_is_foreseen_the_robot_stays_clear_of_everything(monkeypatch):
+    # Wild twists among posts and boxes, from one contact to the next.
+    rng = np.random.default_rng(3)
+    obstacles = [cylinder(*at, radius=0.15) for at in rng.uniform(0.5, 5.5, (14, 2))]
+    obstacles += [
+        Box(shape="box", position=tuple(at), size=(0.4, 0.3), yaw=at[0])
+        for at in rng.uniform(0.5, 5.5, (8, 2))
+    ]
+    foreseen, clear, promised = [], [], [0]
+    free_steps, advance = Foresight.free_steps, World.advance
+
+    def foreseeing(self, tick, steps):
+        promised[0] = free_steps(self, tick, steps)
+        foreseen.append(promised[0])
+        return promised[0]
+
+    def stepping(self, steps, *, apart):
+        for taken in range(1, steps + 1):
+            _, contact = advance(self, 1, apart=apart - taken + 1)
+            if promised[0] > 0:
+                state = self.robot.state()
+                clear.append(self.field.clearance([(state.x, state.y)])[0] - ROBOT_RADIUS)
+            promised[0] -= 1
+            if contact is not None:
+                return taken, contact
+        return steps, None
+
+    monkeypatch.setattr(Foresight, "free_steps", foreseeing)
+    monkeypatch.setattr(World, "advance", stepping)
+    arena, told = Arena(size=(6.0, 6.0)), Decision(heading=0.0, step=0.0)
+    with World(obstacles, arena) as world:
+        free = [
+            at for at in rng.uniform(0.3, 5.7, (60, 2)) if world.field.clearance([at])[0] > 0.22
+        ]
+        collisions = 0
+        for start in free:
+            task = scenario(
+                arena=arena,
+                start=Start(position=tuple(start), heading=rng.uniform(-3.0, 3.0)),
+                goal=Goal(position=(100.0, 100.0)),
+                robot=Robot(max_speed=0.9, acceleration=0.6, turn_acceleration=8.0),
+            )
+            episode = Episode(world, task)
+            for _ in range(20):
+                episode.steer(Twist(*rng.uniform((0.2, -2.0), (0.9, 2.0))), told)
+                if episode.outcome is not None:
+                    break
+            collisions += episode.outcome == "collision"
+    assert collisions > 15
+    foreseen = np.array(foreseen)
+    assert ((foreseen > 0) & (foreseen < TICK_STEPS)).sum() > 30  # close by, and still clear
+    assert min(clear) > 0.0
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])

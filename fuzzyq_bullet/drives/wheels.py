@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick
-from fuzzyq_bullet.drives.nearby import Nearby
+from fuzzyq_bullet.drives.foresight import Foresight
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
@@ -26,9 +25,6 @@ TICK_TIME = TICK_STEPS * TIME_STEP
 DECISION_TICKS = 2
 """Ticks between two decisions: one every 0.3 s."""
 
-SLACK = 0.002
-"""By how much bodies may be nearer to each other in the physics than they are drawn (m): they have
-a margin, and the robot may lean."""
 RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05
 
@@ -50,8 +46,7 @@ class WheelsDriver:
             margin=SENSOR_MARGIN,
         )
         self._pilot = Pilot(scenario.robot, TICK_TIME)
-        near = Nearby(world.field)
-        self._apart = Apart(lambda x, y: near.clearance(x, y) - ROBOT_RADIUS - SLACK)
+        self._foresight = Foresight(world.field, scenario.robot)
         self._twist = STILL
         self.steps = 0
         self.collision: Collision | None = None
@@ -74,7 +69,7 @@ class WheelsDriver:
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
             radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=CastOnce(self._world, position, self._apart_at(now)),
+            sense=CastOnce(self._world, position, self._foresight.apart(now, TICK_STEPS)),
             look=lambda headings: self._world.look(position, headings),
             motion=self._motion,
         )
@@ -121,7 +116,7 @@ class WheelsDriver:
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
         world, left = self._world, TICK_STEPS
-        apart = self._steps_apart(self.ticks[-1])
+        apart = self._foresight.free_steps(self.ticks[-1], TICK_STEPS)
         while left:
             now, stride = self._twist, left
             if now != wanted:
@@ -135,30 +130,6 @@ class WheelsDriver:
             left -= stride
             apart -= stride
         return None
-
-    def _steps_apart(self, tick: Tick) -> int:
-        """Return for how many steps from a tick on the robot surely cannot touch anything."""
-        apart = self._apart_at(tick)
-        if apart >= self._way_in_a_tick(tick):
-            return TICK_STEPS
-        speed, twice = abs(tick.speed), 2.0 * self._limits.acceleration
-        soonest = (math.sqrt(speed * speed + 2.0 * twice * max(0.0, apart)) - speed) / twice
-        return int(soonest / TIME_STEP)
-
-    def _apart_at(self, tick: Tick) -> float:
-        """Return by how much the robot is surely apart from everything (m).
-
-        It is the very clearance where that may be used up within the next tick.
-        """
-        return self._apart.by(tick.x, tick.y, self._way_in_a_tick(tick))
-
-    def _way_in_a_tick(self, tick: Tick) -> float:
-        """Return more than the robot could drive within the next tick (m).
-
-        It would take twice the acceleration that the wheels are ever asked for: v·t + (2a)·t²/2.
-        """
-        twice = 2.0 * self._limits.acceleration
-        return abs(tick.speed) * TICK_TIME + twice * TICK_TIME * TICK_TIME / 2.0
 
     def _collision(self, contact: Contact) -> Collision:
         x, y, _ = contact.point
