@@ -55,6 +55,7 @@ class Field:
     box_index: Ints | None = None
     _cylinders: Floats = field(init=False, repr=False)  # rows: x, y, radius
     _boxes: Floats = field(init=False, repr=False)  # rows: x, y, half sizes, cos and sin of yaw
+    _shapes: Floats = field(init=False, repr=False)  # rows: as of a box, and radius of corners
     _order: Ints = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -67,13 +68,17 @@ class Field:
         if order.shape != (n + m,) or not np.array_equal(np.sort(order), np.arange(n + m)):
             raise ValueError("cylinder_index and box_index must number all obstacles once, from 0")
         x, y, sx, sy, yaw = boxes.T
+        shapes = np.zeros((7, n + m))
+        shapes[:2, :n], shapes[4, :n], shapes[6, :n] = cylinders.T[:2], 1.0, cylinders.T[2]
+        shapes[:6, n:] = x, y, sx / 2, sy / 2, np.cos(yaw), np.sin(yaw)
         ready = {
             "cylinders": cylinders,
             "boxes": boxes,
             "cylinder_index": order[:n],
             "box_index": order[n:],
             "_cylinders": np.ascontiguousarray(cylinders.T),
-            "_boxes": np.array([x, y, sx / 2, sy / 2, np.cos(yaw), np.sin(yaw)]),
+            "_boxes": shapes[:6, n:].copy(),
+            "_shapes": shapes,
             "_order": order,
         }
         for name, array in ready.items():
@@ -171,29 +176,27 @@ class Field:
                 np.minimum(least, self._to_obstacles(here, self._near(here)).min(1), out=least)
         return result
 
-    def around(self, x: float, y: float, reach: float) -> tuple[list[list[float]], float]:
+    def around(
+        self, x: float, y: float, reach: float
+    ) -> tuple[list[tuple[float, list[float]]], float]:
         """Return what is near a point, and how far the nearest of the rest is (m).
 
         Args:
             x: The point (m).
             y: The point (m).
-            reach: What is no farther than this is near (m), and so is the nearest of all.
+            reach: What is no farther than this is near (m).
 
         Returns:
-            For each obstacle near it, a rectangle with round corners: its x, y, half sizes, the
-            cosine and sine of its yaw, and the radius of its corners. A box has none; of a
-            cylinder there is nothing else.
+            For each obstacle near it, the nearest first: how far it is (m), then what it is, a
+            rectangle with round corners: x, y, half sizes, cosine and sine of its yaw, and the
+            radius of its corners. A box has none; of a cylinder there is nothing else.
         """
         to = self._to_obstacles(np.array([[x, y]]))[0]
-        near = to <= max(reach, to.min(initial=math.inf))
-        count = self._cylinders.shape[1]
-        cx, cy, r = self._cylinders[:, near[:count]]
-        nil = np.zeros_like(r)
-        boxes = self._boxes[:, near[count:]]
-        shapes = np.hstack(
-            [[cx, cy, nil, nil, nil + 1.0, nil, r], [*boxes, np.zeros(boxes[0].size)]]
-        )
-        return shapes.T.tolist(), float(to[~near].min(initial=math.inf))
+        order = to.argsort()
+        count = int(to[order].searchsorted(reach, side="right"))
+        near = order[:count]
+        shapes = list(zip(to[near].tolist(), self._shapes[:, near].T.tolist(), strict=True))
+        return shapes, float(to[order[count]]) if count < len(to) else math.inf
 
     def free_distance(
         self, origin: ArrayLike, headings: ArrayLike, radius: float, limit: float

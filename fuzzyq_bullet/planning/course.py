@@ -79,8 +79,11 @@ class Course:
         ahead = points[:AHEAD]
         ways = [math.dist(here, point) for point in ahead]
         headings = [math.atan2(y - here[1], x - here[0]) for x, y in ahead]
-        slightly = [headings[0] + turn for turn in SLIGHT]
-        free = observation.sense([*headings, *slightly])[: len(headings)]
+        # In the same batch what will be asked next: slight turns, and where the body faces.
+        soon = [headings[0] + turn for turn in SLIGHT]
+        if observation.motion is not None:
+            soon.append(observation.heading)
+        free = observation.sense([*headings, *soon])[: len(headings)]
         seen = [k for k in range(len(ahead)) if free[k] >= min(ways[k], observation.range)]
         target = seen[-1] if seen else 0
         heading, way = headings[target], ways[target]
