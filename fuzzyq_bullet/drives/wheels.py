@@ -115,13 +115,13 @@ class WheelsDriver:
 
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
-        world, left = self._world, TICK_STEPS
+        world, limits, now, left = self._world, self._limits, self._twist, TICK_STEPS
         apart = self._foresight.free_steps(self.ticks[-1], TICK_STEPS)
         while left:
-            now, stride = self._twist, left
+            stride = left
             if now != wanted:
                 stride = min(COMMAND_STEPS, left)
-                now = self._twist = ramp(now, wanted, self._limits, stride * TIME_STEP)
+                self._twist = now = ramp(now, wanted, limits, stride * TIME_STEP)
                 world.robot.command(*wheel_commands(*now))
             taken, contact = world.advance(stride, apart=apart)
             self.steps += taken

@@ -62,7 +62,10 @@ class LineBundle:
         for heading in headings:
             cos, sin = math.cos(heading), math.sin(heading)
             for aside, ahead in self._pairs:
-                dx, dy, far_x, far_y = aside * sin, aside * cos, ahead * cos, ahead * sin
+                dx = aside * sin
+                dy = aside * cos
+                far_x = ahead * cos
+                far_y = ahead * sin
                 starts.append((x + dx, y - dy, z))
                 starts.append((x - dx, y + dy, z))
                 ends.append((x + (far_x + dx), y + (far_y - dy), z))
