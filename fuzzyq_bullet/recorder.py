@@ -35,10 +35,9 @@ def recorded(
     """
     ticks = _array(driver.ticks, len(driver.ticks), len(Tick._fields))
     taken = [decision for _, decision in decisions]
-    told = dict(zip(Decision._fields, zip(*taken, strict=True), strict=False))
 
     def column(name: str, *shape: int) -> Floats:
-        values = _array(told.get(name, ()), len(taken), *shape)
+        values = _array([getattr(decision, name) for decision in taken], len(taken), *shape)
         # What a planner cannot put into a number is not explained; only a reach may be endless.
         return values if name == "reach" else np.where(np.isinf(values), np.nan, values)
 
@@ -61,7 +60,9 @@ def recorded(
             heading=column("heading"),
             step=column("step"),
             reach=column("reach"),
-            mode=np.array([MODES.index(mode) for mode in told.get("mode", ())], dtype=np.int64),
+            mode=np.array(
+                [MODES.index(mode) for mode in (one.mode for one in taken)], dtype=np.int64
+            ),
             lines=column("lines", 3),
             lengths=column("lengths", 3),
             distance=column("distance"),
@@ -81,7 +82,16 @@ def recorded(
 
 
 def _array(rows: Iterable[Any], *shape: int) -> Floats:
-    """Return numbers in nested sequences as an array; numpy alone takes five times as long."""
-    for _ in shape[1:]:
-        rows = chain.from_iterable(rows)
+    """Return numbers in nested sequences as an array; numpy alone takes five times as long.
+
+    Raises:
+        ValueError: If they have another shape.
+    """
+    for size in shape[1:]:
+        several = list(rows)
+        if any(len(row) != size for row in several):
+            raise ValueError(
+                f"a decision tells other than {' × '.join(map(str, shape[1:]))} numbers"
+            )
+        rows = chain.from_iterable(several)
     return np.fromiter(rows, np.float64).reshape(shape)

@@ -227,6 +227,20 @@ def test_while_no_touch_is_foreseen_the_robot_stays_clear_of_everything(monkeypa
     assert min(clear) > 0.0
 
 
+def test_lines_of_another_shape_are_refused_and_not_told_of_other_decisions():
+    class Uneven:
+        def decide(self, observation):
+            count = 2 if observation.time < 0.5 else 4
+            return Decision(heading=0.0, step=0.4, lines=(0.0,) * count, lengths=(1.0,) * 3)
+
+    task = realise(scenario(limits=Limits(time=1.2)))
+    with (
+        World(task.obstacles, task.arena) as world,
+        pytest.raises(ValueError, match="other than 3 numbers"),
+    ):
+        run_in(world, task, Uneven())
+
+
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 def test_a_touch_is_a_collision_that_says_when_where_and_what(drive):
     obstacles = (cylinder(1.5, 4.0), cylinder(3.0, 2.5), cylinder(4.0, 1.0))

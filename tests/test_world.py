@@ -216,6 +216,22 @@ def test_who_knows_that_nothing_stands_beside_the_robot_is_told_the_same_by_fewe
     assert min(fewer) < 2.0 * SENSOR_MARGIN
 
 
+def test_it_is_the_same_beside_the_corner_of_something_huge(engine):
+    # A ray meets a face of 100 m up to a centimetre beyond its end.
+    obstacles = [box(-45.0, -45.0, 100.0, 100.0), box(205.0, 205.0, 1.0, 1.0)]
+    world = World(obstacles, Arena(size=(300.0, 300.0), walls=False), engine=engine)
+    for origin, heading in (((5.2253, 5.0141), 1.635), ((5.0141, 5.2253), -0.064)):
+        apart = world.field.clearance([origin])[0] - ROBOT_RADIUS
+        assert 0.025 < apart < 0.05
+        assert world.sense(origin, [heading], apart=apart) == world.sense(origin, [heading])
+    rng = np.random.default_rng(5)
+    for away, angle in rng.uniform((0.22, -0.5), (0.26, 2.0), (400, 2)):
+        origin = (5.0 + away * math.cos(angle), 5.0 + away * math.sin(angle))
+        apart = world.field.clearance([origin])[0] - ROBOT_RADIUS
+        headings = rng.uniform(-math.pi, math.pi, 6).tolist()
+        assert world.sense(origin, headings, apart=apart) == world.sense(origin, headings)
+
+
 @contextmanager
 def counting_rays(world):
     api, cast = world._api, [0]

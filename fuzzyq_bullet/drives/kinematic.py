@@ -8,7 +8,7 @@ from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
 from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.sensor import CastOnce
-from fuzzyq_bullet.physics.sight import BESIDE, SENSOR_MARGIN, SENSOR_RANGE, Sight
+from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
@@ -51,7 +51,7 @@ class KinematicDriver:
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
             radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=CastOnce(self._world, position, self._apart.by(*position, BESIDE)),
+            sense=CastOnce(self._world, position, self._apart.by(*position, self._world.beside)),
             look=lambda headings: self._world.look(position, headings),
         )
 

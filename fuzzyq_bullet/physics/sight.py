@@ -26,9 +26,9 @@ SENSOR_MARGIN = 0.02
 _FACES = int(Group.FACES)
 _FRACTION = itemgetter(2)
 """Of what PyBullet tells of a ray: where it ended as a part of its length."""
-BESIDE = SENSOR_MARGIN + 5.0 * ROUNDNESS
-"""What is no nearer to the robot's body than this stands in no line's margin (m): the faces that
-rays meet reach a little beyond what is really there."""
+_BESIDE = SENSOR_MARGIN + 5.0 * ROUNDNESS
+_BEYOND = 2e-4
+"""A ray also meets what lies a little beyond the ends of a face: by 1e-4 of its length."""
 _Self = TypeVar("_Self", bound="Sight")
 
 
@@ -44,6 +44,8 @@ class Sight:
 
     Attributes:
         field: The exact geometry of all obstacles and walls.
+        beside: What is no nearer to the robot's body than this (m) stands in no line's margin: the
+            faces that rays meet reach a little beyond what is really there.
     """
 
     def __init__(
@@ -59,6 +61,7 @@ class Sight:
         self.engine.reset()
         self._api = self.engine.api
         self._lines = LineBundle(ROBOT_RADIUS, SENSOR_MARGIN, SENSOR_RANGE, BODY_HEIGHT)
+        self.beside = _BESIDE + _BEYOND * float(self.field.boxes[:, 2:4].max(initial=0.0))
         self._build(obstacles, arena)
 
     def sense(
@@ -75,7 +78,7 @@ class Sight:
         Returns:
             Free travel (m), one for each, in [0, ``SENSOR_RANGE``].
         """
-        probes = apart < BESIDE
+        probes = apart < self.beside
         start, stop = self._lines.rays(origin, headings, probes=probes)
         hits = self._api.rayTestBatch(
             start, stop, collisionFilterMask=_FACES, physicsClientId=self.engine.client
