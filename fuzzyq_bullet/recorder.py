@@ -60,9 +60,7 @@ def recorded(
             heading=column("heading"),
             step=column("step"),
             reach=column("reach"),
-            mode=np.array(
-                [MODES.index(mode) for mode in (one.mode for one in taken)], dtype=np.int64
-            ),
+            mode=np.array([MODES.index(decision.mode) for decision in taken], dtype=np.int64),
             lines=column("lines", 3),
             lengths=column("lengths", 3),
             distance=column("distance"),

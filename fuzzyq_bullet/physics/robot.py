@@ -89,6 +89,7 @@ class Robot:
         client = self._engine.client
         (x, y, _), (i, j, k, w) = self._api.getBasePositionAndOrientation(self.body, client)
         (vx, vy, _), (_, _, turn_rate) = self._api.getBaseVelocity(self.body, client)
+        # The quaternion's turn about the z axis.
         heading = math.atan2(2.0 * (w * k + i * j), 1.0 - 2.0 * (j * j + k * k))
         cos, sin = math.cos(heading), math.sin(heading)
         # PyBullet tells the centre of mass, which lies a little towards the caster.

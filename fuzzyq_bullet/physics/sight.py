@@ -27,6 +27,8 @@ _FACES = int(Group.FACES)
 _FRACTION = itemgetter(2)
 """Of what PyBullet tells of a ray: where it ended as a part of its length."""
 _BESIDE = SENSOR_MARGIN + 5.0 * ROUNDNESS
+"""How near a thing may be in a line's margin (m), where no face is long; round ones reach a little
+beyond the circle."""
 _BEYOND = 2e-4
 """A ray also meets what lies a little beyond the ends of a face: by 1e-4 of its length."""
 _Self = TypeVar("_Self", bound="Sight")
