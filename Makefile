@@ -1,5 +1,5 @@
 # Everything is installed into .venv; nothing outside this folder is touched.
-# Needed beforehand: make, and CPython 3.10 or 3.11.
+# Needed beforehand: make, and CPython 3.10, 3.11, 3.12 or 3.13.
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -16,11 +16,14 @@ ifneq ($(shell { "$(PYTHON)" $(VERSION); } 2>&1),$(shell { $(BIN)/python $(VERSI
 .PHONY: $(READY)
 endif
 else
-CANDIDATES := python3.11 python3.10 python3 python
+# The newest first; also where pyenv keeps those that are not on the path.
+PYENV_ROOT ?= $(HOME)/.pyenv
+CANDIDATES := $(foreach minor,13 12 11 10,python3.$(minor) \
+	$(wildcard $(PYENV_ROOT)/versions/3.$(minor).*/bin/python)) python3 python
 endif
 
 SUITABLE := import sys; sys.exit(sys.implementation.name != "cpython" \
-	or not (3, 10) <= sys.version_info[:2] <= (3, 11))
+	or not (3, 10) <= sys.version_info[:2] <= (3, 13))
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test lint format policies lock clean
@@ -34,7 +37,7 @@ help:
 	@echo 'make policies  train again what assets/policies holds, to the same bytes'
 	@echo 'make lock    resolve the dependencies anew into requirements.lock'
 	@echo 'make clean   remove .venv and what tools left behind; videos in $(OUT) stay'
-	@echo 'All take PYTHON=/path/to/python3.11, which may also be a 3.10.'
+	@echo 'All take PYTHON=/path/to/python3.12 (3.10 to 3.13); without it the newest there is.'
 
 setup: $(READY)
 
@@ -84,13 +87,13 @@ $(READY): pyproject.toml requirements.lock
 		if { "$$candidate" -c '$(SUITABLE)'; } 2>/dev/null; then python=$$candidate; break; fi; \
 	done; \
 	if [ -z "$$python" ]; then \
-		echo 'fuzzyq_bullet needs CPython 3.10 or 3.11: PyBullet has ready-made wheels for no later one.' >&2; \
+		echo 'fuzzyq_bullet needs CPython 3.10 to 3.13: PyBullet has ready-made wheels for these.' >&2; \
 		echo 'Looked at:' >&2; \
 		for candidate in $(CANDIDATES); do \
 			found=$$("$$candidate" --version 2>/dev/null | head -n 1) 2>/dev/null; \
 			echo "  $$candidate: $${found:-not there}" >&2; \
 		done; \
-		echo 'Point to one like this: make $(or $(MAKECMDGOALS),setup) PYTHON=/path/to/python3.11' >&2; \
+		echo 'Point to one like this: make $(or $(MAKECMDGOALS),setup) PYTHON=/path/to/python3.13' >&2; \
 		exit 1; \
 	fi; \
 	same='import sys; print(sys.version_info[:3])'; \

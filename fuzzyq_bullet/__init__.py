@@ -6,12 +6,13 @@
     print(result_of(trajectory).outcome)
 
 Each public name is imported when it is first asked for, so that importing the package costs
-nothing and loads no PyBullet.
+nothing and loads no PyBullet. The environments are known to Gymnasium from then on.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from fuzzyq_bullet.gym_ids import register_when_imported
 from fuzzyq_bullet.version import __version__
 
 if TYPE_CHECKING:
@@ -72,3 +73,6 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
+
+
+register_when_imported()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import warnings
 import zipfile
 from typing import TYPE_CHECKING, Any
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import read_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,10 +31,9 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
         UserError: If it cannot be read, or is no archive of plain arrays.
     """
     try:
-        if path.exists() and not path.is_file():
-            raise UserError(f"{path}: is not a file; give the record (.npz) of a run")
+        content = io.BytesIO(read_bytes(path, what="an archive of arrays (.npz)", most=MAX_BYTES))
         # The warnings numpy has about odd headers are about files that it did not write itself.
-        with zipfile.ZipFile(path) as archive, warnings.catch_warnings():
+        with zipfile.ZipFile(content) as archive, warnings.catch_warnings():
             warnings.simplefilter("error")
             members = archive.infolist()
             # What a member says to be its size is also the most that is read of it.

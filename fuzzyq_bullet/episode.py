@@ -8,12 +8,14 @@ from typing import TypeAlias
 
 import numpy as np
 
+from fuzzyq_bullet.consult import ask, build_planner, refusal
 from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.pilot import Twist
 from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.planning import Decision, Observation, Planner, make_planner
+from fuzzyq_bullet.planning import Decision, Observation, Planner
+from fuzzyq_bullet.planning.validation import DecisionError, checked
 from fuzzyq_bullet.recorder import recorded
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.models import Limits, Scenario
@@ -25,7 +27,8 @@ Progress: TypeAlias = Callable[[float, float], None]
 STUCK_TIME = 15.0
 STUCK_RADIUS = 0.1
 """A robot that stays within this distance (m) for ``STUCK_TIME`` seconds is stuck: longer than it
-may take in a narrow place to turn round, try a way twice, and give it up."""
+may take in a narrow place to turn round, try a way twice, and give it up. A robot that is slower
+than usual may take as many times longer."""
 
 
 def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
@@ -37,12 +40,13 @@ def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
 
     Raises:
         UserError: If the scenario cannot be run: overlaps, or obstacles that cannot be placed.
+        PlannerError: If the planner raises, exits or decides what cannot be carried out.
     """
     scenario = realise(scenario)
     check(scenario)
     # The first stream of the seed places the obstacles; the planner has the second to itself.
     rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(1,)))
-    planner = make_planner(scenario.planner, rng)
+    planner = build_planner(scenario.planner, rng)
     build = World if scenario.drive == "wheels" else Sight
     with build(scenario.obstacles, scenario.arena) as world:
         return run_in(world, scenario, planner, progress=progress)
@@ -54,12 +58,18 @@ def run_in(
     """Run one episode of a realised scenario in a world that is already built for it.
 
     Raises:
-        ValueError: If the scenario is to be driven by wheels, and the world is there to be seen
-            only.
+        ValueError: If the world is not that of the scenario, or there to be seen only although
+            the scenario is to be driven by wheels.
+        PlannerError: If the planner raises, exits or decides what cannot be carried out.
     """
-    episode = Episode(world, scenario)
+    episode, name = Episode(world, scenario), scenario.planner.name
     while episode.outcome is None:
-        episode.advance(planner.decide(episode.observe()))
+        observation = episode.observe()
+        decision = ask(planner, observation, name)
+        try:
+            episode.advance(decision)
+        except DecisionError as error:
+            raise refusal(planner, observation, name, error) from error
         if progress is not None:
             now = episode.now
             progress(now.time, math.dist((now.x, now.y), scenario.goal.position))
@@ -72,21 +82,25 @@ class Episode:
     Args:
         world: A world that is built for the scenario; the kinematic drive only looks at it.
         scenario: A realised scenario.
-        patience: How long the robot may stay at one place before it counts as stuck (s).
+        patience: How long the robot may stay at one place before it counts as stuck (s); a slow
+            robot may stay longer.
 
     Raises:
-        ValueError: If there is nothing in the world for wheels to drive on.
+        ValueError: If the world was built of other obstacles or another arena, or there is nothing
+            in it for wheels to drive on.
 
     Attributes:
         outcome: How it ended; None while it goes on.
     """
 
     def __init__(self, world: Sight, scenario: Scenario, *, patience: float = STUCK_TIME) -> None:
+        if (world.obstacles, world.arena) != (scenario.obstacles, scenario.arena):
+            raise ValueError(f"the world was not built for the scenario {scenario.name}")
         self._scenario = scenario
         self._field = world.field
         self._driver = _driver(world, scenario)
         self._decisions: list[tuple[int, Decision]] = []
-        self._standstill = _Standstill(self.now, patience)
+        self._standstill = _Standstill(self.now, patience * self._driver.slowness)
         self.outcome: Outcome | None = None
 
     @property
@@ -99,8 +113,13 @@ class Episode:
         return self._driver.observe()
 
     def advance(self, decision: Decision) -> None:
-        """Carry out a decision until the next one is due, or the episode is over."""
-        self._note(decision)
+        """Carry out a decision until the next one is due, or the episode is over.
+
+        Raises:
+            DecisionError: If it cannot be carried out.
+            ValueError: If the episode is over already.
+        """
+        decision = self._note(decision)
         self._driver.advance(decision)
         self._judge(decision)
 
@@ -112,11 +131,14 @@ class Episode:
             told: What goes on record where a planner's decision would; it moves nothing.
 
         Raises:
-            ValueError: In the kinematic drive, which has no wheels.
+            ValueError: In the kinematic drive, which has no wheels; if the twist is not finite, or
+                the episode is over already.
         """
+        if not all(map(math.isfinite, twist)):
+            raise ValueError(f"a twist must be finite, got {tuple(twist)}")
         if not isinstance(self._driver, WheelsDriver):
             raise ValueError(f"a twist needs the drive wheels, not {self._scenario.drive}")
-        self._note(told)
+        told = self._note(told)
         self._driver.steer(twist)
         self._judge(told)
 
@@ -139,12 +161,16 @@ class Episode:
         Returns:
             A trajectory; while the episode goes on, one that the time has run out for.
         """
-        decisions = [*self._decisions, (len(self._driver.ticks) - 1, told)]
+        decisions = [*self._decisions, (len(self._driver.ticks) - 1, checked(told))]
         outcome = self.outcome or "timeout"
         return recorded(self._scenario, self._field, self._driver, decisions, outcome)
 
-    def _note(self, decision: Decision) -> None:
+    def _note(self, decision: Decision) -> Decision:
+        if self.outcome is not None:
+            raise ValueError(f"the episode is over ({self.outcome}); begin another")
+        decision = checked(decision)
         self._decisions.append((len(self._driver.ticks) - 1, decision))
+        return decision
 
     def _judge(self, decision: Decision) -> None:
         """See whether the episode is over."""

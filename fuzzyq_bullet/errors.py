@@ -17,6 +17,10 @@ class UserError(Exception):
         self.problems: tuple[str, ...] = problems
 
 
+class PlannerError(UserError):
+    """A planner raised, exited, or decided nonsense; says which one, what, when and where."""
+
+
 def printable(text: str) -> str:
     """Return a text as one line that does nothing to a terminal.
 

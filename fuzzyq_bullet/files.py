@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import glob
+import os
 import secrets
 import shutil
-from collections.abc import Iterator, Sequence
+import stat
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from fuzzyq_bullet.errors import UserError
+
+_BINARY = getattr(os, "O_BINARY", 0)
+"""Without it Windows would change line ends."""
+_owner = ""
+"""What stands in the names of all that this process writes beside."""
 
 
 @contextmanager
@@ -47,6 +54,34 @@ def write_text(path: Path, text: str) -> None:
         part.write_text(text, encoding="utf-8")
 
 
+def read_bytes(path: Path, *, what: str, most: int) -> bytes:
+    """Return the contents of a regular file; nothing that could keep a reader waiting is opened.
+
+    Args:
+        path: The file.
+        what: What it should be, with its article, for messages: ``a policy``.
+        most: Bytes that it may have.
+
+    Raises:
+        UserError: If it cannot be read, is no regular file (a folder, a FIFO, a device), or is too
+            large; one line.
+    """
+    try:
+        # Opened without waiting and looked at when open: no FIFO can take its place in between.
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | _BINARY)
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            os.close(descriptor)
+            raise UserError(f"{path}: is not a file; give {what}")
+        with os.fdopen(descriptor, "rb") as file:
+            content = file.read(most + 1)
+    except (OSError, ValueError) as error:  # ValueError: a null character in its name
+        reason = getattr(error, "strerror", None) or error
+        raise UserError(f"{path}: cannot be read: {reason}") from error
+    if len(content) > most:
+        raise UserError(f"{path}: too large; {what} has at most {most} bytes")
+    return content
+
+
 def writable_folder(path: Path) -> Path:
     """Create the folder ``path`` if need be and make sure that a file can be written there.
 
@@ -80,15 +115,84 @@ def writable_files(folder: Path, names: Sequence[str]) -> list[Path]:
     return paths
 
 
-def remove_parts(path: Path) -> None:
-    """Remove what a process that was killed left of a file that it was about to write."""
-    for part in path.parent.glob(f".{glob.escape(path.name)}.*.part"):
+def refuse_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
+    """Make sure that no output is the same file as an input, by whatever path or link.
+
+    Raises:
+        UserError: If one is.
+    """
+    read = list(inputs)
+    for output in outputs:
+        for one in read:
+            with suppress(OSError, ValueError):  # one of them is not there: not the same
+                if output.samefile(one):
+                    raise UserError(
+                        f"{output}: would be replaced, but is an input of this command ({one}); "
+                        "write somewhere else"
+                    )
+
+
+def own_parts(owner: str) -> None:
+    """Mark all that this process writes beside, so that ``remove_parts`` finds it and no other's.
+
+    Args:
+        owner: Letters and digits that no other process uses.
+    """
+    global _owner
+    _owner = owner
+
+
+def remove_parts(path: Path, owner: str) -> None:
+    """Remove what a process that was killed left of a file that it was about to write.
+
+    Args:
+        path: The file.
+        owner: What the process called itself in ``own_parts``.
+    """
+    for part in path.parent.glob(f".{glob.escape(path.name)}.{owner}*.part"):
         _remove(part)
+
+
+@contextmanager
+def alone_at(path: Path) -> Iterator[None]:
+    """Hold a file against other processes that would renew it while the block runs.
+
+    Where the system or its folder knows no locks, nobody is kept out.
+
+    Raises:
+        UserError: If another process holds it.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        yield
+        return
+    lock = path.with_name(f".{path.name}.lock")
+    try:
+        descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
+    except OSError as error:
+        raise UserError(f"{lock}: cannot be written: {error.strerror or error}") from error
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise UserError(
+                f"{path}: another process is at work on it; use another --out"
+            ) from error
+        except OSError:  # a file system without locks
+            pass
+        try:
+            yield
+        finally:
+            with suppress(OSError):
+                lock.unlink()  # while it is still held: who comes later makes a new one
+    finally:
+        os.close(descriptor)
 
 
 def _part(path: Path) -> Path:
     # By chance, not by process id: containers that share a folder may share that too.
-    return path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    return path.with_name(f".{path.name}.{_owner}{secrets.token_hex(4)}.part")
 
 
 def _remove(folder: Path) -> None:

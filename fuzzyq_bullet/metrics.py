@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from fuzzyq_bullet.oracle import shortest_path, spl
+from fuzzyq_bullet.oracle import feasible, shortest_path, spl
 from fuzzyq_bullet.planning import MODES
 from fuzzyq_bullet.scenario import Box, Scenario
 from fuzzyq_bullet.trajectory import Outcome, Trajectory
@@ -49,7 +49,8 @@ class Result(BaseModel):
             for.
         spl: Success weighted by path length, 0 to 1: shortest over driven path, 0 for a run that
             did not reach the goal; null where ``shortest_path_m`` is.
-        min_clearance_m: Least distance to anything (m); null when there is nothing.
+        min_clearance_m: Least distance to anything (m), negative for an overlap; null when there
+            is nothing.
         collisions: Contacts: 0, or 1, since the first one ends the run.
         turning_rad: Sum of all changes of direction, left and right (rad).
         modes: Decisions in each mode.
@@ -100,7 +101,7 @@ def result_of(trajectory: Trajectory) -> Result:
         path_length_m=round(driven, 6),
         shortest_path_m=None if shortest is None else round(shortest, 6),
         spl=None if weighted is None else round(weighted, 6),
-        min_clearance_m=round(clearance, 6) if math.isfinite(clearance) else None,
+        min_clearance_m=round(clearance, 6) + 0.0 if math.isfinite(clearance) else None,
         collisions=int(trajectory.collision is not None),
         turning_rad=round(float(np.abs(turns).sum()), 6),
         modes=ModeCounts(**dict(zip(MODES, counts.tolist(), strict=True))),
@@ -109,9 +110,22 @@ def result_of(trajectory: Trajectory) -> Result:
     )
 
 
+def has_way(scenario: Scenario) -> bool | None:
+    """Return whether there is any way to the goal; None among more than ``MOST_ROUND`` obstacles.
+
+    Args:
+        scenario: A realised scenario.
+    """
+    return None if _is_crowded(scenario) else feasible(scenario)
+
+
+def _is_crowded(scenario: Scenario) -> bool:
+    return sum(4 if isinstance(one, Box) else 1 for one in scenario.obstacles) > MOST_ROUND
+
+
 def _shortest(scenario: Scenario) -> float | None:
     """Return the length of the shortest path (m); None if there is none, or too much in the way."""
-    if sum(4 if isinstance(one, Box) else 1 for one in scenario.obstacles) > MOST_ROUND:
+    if _is_crowded(scenario):
         return None
     route = shortest_path(scenario)
     return None if route is None else route.length

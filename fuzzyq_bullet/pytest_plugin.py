@@ -7,7 +7,7 @@ package's own modules nor the physics, until a scenario is run.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,14 +55,30 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
     """Take up scenario files; they are read when they are run."""
-    name = file_path.name
-    if not name.endswith(ENDINGS):
-        if not name.endswith(IN_FOLDERS):
-            return None
-        if not any(folder in file_path.parents for folder in parent.config.stash[_folders]):
-            return None
+    if not _is_scenario(file_path, parent.config):
+        return None
     collector: pytest.Collector = ScenarioFile.from_parent(parent, path=file_path)
     return collector
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Take up dead links and FIFOs too, which pytest passes over: what is gone is no pass."""
+    report = yield
+    if isinstance(collector, getattr(pytest, "Directory", ())) and report.passed:
+        for path in sorted(collector.path.iterdir()):
+            if _is_scenario(path, collector.config) and not path.is_file() and not path.is_dir():
+                report.result.append(ScenarioFile.from_parent(collector, path=path))
+    return report
+
+
+def _is_scenario(path: Path, config: pytest.Config) -> bool:
+    if path.name.endswith(ENDINGS):
+        return True
+    in_folder = any(folder in path.parents for folder in config.stash[_folders])
+    return in_folder and path.name.endswith(IN_FOLDERS)
 
 
 @pytest.fixture
@@ -73,6 +89,9 @@ def run_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioRun]:
     ``result`` and ``trajectory``.
     """
     from fuzzyq_bullet.checks import by_hand
+    from fuzzyq_bullet.checks.plugins import load_plugins
+
+    load_plugins(_plugins(request.config))
 
     def run(source: str | os.PathLike[str], **options: Any) -> ScenarioRun:
         beside = request.path.parent / source
@@ -102,6 +121,7 @@ class ScenarioItem(pytest.Item):
         Raises:
             ScenarioFailedError: If it did not do what it expects, or could not be run.
         """
+        from fuzzyq_bullet.checks.collect import refuse_dead_link
         from fuzzyq_bullet.checks.verdict import Job
         from fuzzyq_bullet.checks.words import explanation
         from fuzzyq_bullet.errors import UserError
@@ -112,6 +132,7 @@ class ScenarioItem(pytest.Item):
         again = _command(f"{file}::{self.name}") if modules else ""
         job = Job(file=file, name=self.name, again=again)
         try:
+            refuse_dead_link(self.path)
             ((_, verdict),) = _crew_of(self.config).check([job])
         except UserError as error:
             problem = str(error).replace("--plugin:", "fuzzyq_plugins:")
@@ -151,13 +172,17 @@ def _crew_of(config: pytest.Config) -> Crew:
             timeout = 0.0
         if not 0.0 < timeout <= 86400.0:
             raise UserError(f"fuzzyq_timeout: must be seconds, more than 0, got {given!r}")
-        base = config.inipath.parent if config.inipath is not None else config.rootpath
-        plugins = [
-            _from_here(base / name) if name.endswith(".py") else name
-            for name in config.getini("fuzzyq_plugins")
-        ]
-        config.stash[_crew] = Crew(1, plugins=plugins, timeout=timeout)
+        config.stash[_crew] = Crew(1, plugins=_plugins(config), timeout=timeout)
     return config.stash[_crew]
+
+
+def _plugins(config: pytest.Config) -> list[str]:
+    """Return the modules of ``fuzzyq_plugins``; files lie beside the configuration."""
+    base = config.inipath.parent if config.inipath is not None else config.rootpath
+    return [
+        _from_here(base / name) if name.endswith(".py") else name
+        for name in config.getini("fuzzyq_plugins")
+    ]
 
 
 def _from_here(path: Path) -> str:

@@ -53,7 +53,7 @@ def recorded(
             speed=ticks[:, 4],
             turn_rate=ticks[:, 5],
             wheel_speeds=ticks[:, 6:8],
-            clearance=np.maximum(field.clearance(ticks[:, 1:3]) - ROBOT_RADIUS, 0.0),
+            clearance=field.clearance(ticks[:, 1:3]) - ROBOT_RADIUS,
         ),
         decisions=Decisions(
             tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
@@ -80,16 +80,7 @@ def recorded(
 
 
 def _array(rows: Iterable[Any], *shape: int) -> Floats:
-    """Return numbers in nested sequences as an array; numpy alone takes five times as long.
-
-    Raises:
-        ValueError: If they have another shape.
-    """
-    for size in shape[1:]:
-        several = list(rows)
-        if any(len(row) != size for row in several):
-            raise ValueError(
-                f"a decision tells other than {' × '.join(map(str, shape[1:]))} numbers"
-            )
-        rows = chain.from_iterable(several)
+    """Return numbers in nested sequences as an array; numpy alone takes five times as long."""
+    for _ in shape[1:]:
+        rows = chain.from_iterable(rows)
     return np.fromiter(rows, np.float64).reshape(shape)

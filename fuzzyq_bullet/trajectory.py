@@ -32,7 +32,7 @@ _FAR = 1e7
 """No position (m), angle (rad) or speed of a run comes near this."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ticks:
     """The robot's state at every tick of the drive, first the start and last the end.
 
@@ -45,7 +45,8 @@ class Ticks:
         speed: Forward speed (m/s), shape (T,).
         turn_rate: Turn rate (rad/s), shape (T,).
         wheel_speeds: Speeds of the left and right wheel (rad/s), shape (T, 2).
-        clearance: Distance to the nearest obstacle or wall (m), shape (T,); inf when there is none.
+        clearance: Distance to the nearest obstacle or wall (m), shape (T,); negative where the two
+            overlap, inf when there is none.
     """
 
     time: Floats
@@ -57,7 +58,7 @@ class Ticks:
     clearance: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Decisions:
     """Every decision of the planner, with all that explains it. ``D`` decisions.
 
@@ -121,7 +122,7 @@ class Collision:
     normal_force: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
     """One whole episode.
 
@@ -144,6 +145,27 @@ class Trajectory:
     ticks: Ticks
     decisions: Decisions
     version: str
+
+    def __repr__(self) -> str:
+        scenario, ticks = self.scenario, self.ticks
+        return (
+            f"<Trajectory {scenario.name}: {self.outcome} after {ticks.time[-1]:.2f} s "
+            f"({scenario.planner.name}, {scenario.drive}, seed {scenario.seed})>"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Whether two runs were asked for alike, and went alike to the last bit."""
+        if not isinstance(other, Trajectory):
+            return NotImplemented
+        return (self.scenario, self.collision, self.version, self.digest()) == (
+            other.scenario,
+            other.collision,
+            other.version,
+            other.digest(),
+        )
+
+    def __hash__(self) -> int:
+        return hash(self.digest())
 
     def digest(self) -> str:
         """Return a hash of the exact trajectory: every float of every array, and how it ended."""

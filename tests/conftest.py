@@ -10,9 +10,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
 
+import hypothesis
 import pytest
 
 from fuzzyq_bullet.cli import app
+
+# How long an example takes is the machine's affair: no test asserts a time.
+hypothesis.settings.register_profile("fuzzyq", deadline=None)
+hypothesis.settings.load_profile("fuzzyq")
 
 FUZZYQ = Path(sys.executable).with_name("fuzzyq")
 

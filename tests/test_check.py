@@ -202,7 +202,7 @@ def test_a_run_that_touches_nothing_is_held_to_clearance_time_and_goal(
         ("crash", "its process crashed: SIGABRT (aborted)"),
         ("eat", "ran out of the memory that it may use (--memory)"),
         ("exit", "its process ended by itself, with exit code 3"),
-        ("raise", "stopped by an error: ValueError: no way ("),
+        ("raise", "planner bad: stopped by ValueError: no way, after 0.00 s ("),
     ],
 )
 def test_what_brings_its_process_down_fails_alone_and_says_how(

@@ -75,6 +75,6 @@ def test_planners_are_compared_at_the_same_speed(fuzzyq: Call, tmp_path: Path) -
     options = ("--planner", "fuzzy", "--drive", "kinematic", "--no-video", "--out", tmp_path)
     done = fuzzyq("run", "figure-12a", *options)
     assert done.returncode in (0, 1), done.stderr
-    record = Trajectory.load(tmp_path / "figure-12a.npz")
+    record = Trajectory.load(tmp_path / "figure-12a-fuzzy-kinematic.npz")
     assert record.scenario.planner.name == "fuzzy"
     assert record.scenario.planner.model_dump()["weights"] == (1.0, 1.0)

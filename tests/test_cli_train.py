@@ -304,7 +304,7 @@ def unfit(whole: Files, tmp_path: Path) -> dict[str, str]:
     return {
         **{name: words for name, (_, words) in contents.items()},
         "nowhere": "No such file or directory; make one with fuzzyq train fuzzy-q-lambda",
-        ".": "is not a file; give a policy (.json)",
+        ".": "is not a file; give",
     }
 
 

@@ -184,9 +184,9 @@ def test_it_gives_up_when_it_came_no_nearer_for_three_seconds():
 def test_a_robot_that_turns_slowly_is_given_the_time_to_turn_round():
     course, slow = Course([(-1.5, 0.0)]), replace(MOTION, max_turn_rate=0.5)
     half_turn = math.pi / 0.5
-    for time in (10.0, 10.1 + PATIENCE, 10.9 + half_turn):
+    for time in (10.0, 10.1 + PATIENCE, 11.0 + half_turn, 9.9 + PATIENCE * slow.slowness):
         assert course.next(observe(Field(), time=time, motion=slow)) is not None
-    assert course.next(observe(Field(), time=11.1 + half_turn, motion=slow)) is None
+    assert course.next(observe(Field(), time=10.1 + PATIENCE * slow.slowness, motion=slow)) is None
 
 
 def test_a_centimetre_nearer_is_patience_anew_and_less_is_not():

@@ -12,7 +12,7 @@ from fuzzyq_bullet.drives.foresight import Foresight
 from fuzzyq_bullet.drives.pilot import Twist
 from fuzzyq_bullet.drives.wheels import TICK_STEPS
 from fuzzyq_bullet.episode import Episode, run, run_in
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.oracle import shortest_path
@@ -213,6 +213,7 @@ def test_while_no_touch_is_foreseen_the_robot_stays_clear_of_everything(monkeypa
                 arena=arena,
                 start=Start(position=tuple(start), heading=rng.uniform(-3.0, 3.0)),
                 goal=Goal(position=(100.0, 100.0)),
+                obstacles=world.obstacles,
                 robot=Robot(max_speed=0.9, acceleration=0.6, turn_acceleration=8.0),
             )
             episode = Episode(world, task)
@@ -236,7 +237,7 @@ def test_lines_of_another_shape_are_refused_and_not_told_of_other_decisions():
     task = realise(scenario(limits=Limits(time=1.2)))
     with (
         World(task.obstacles, task.arena) as world,
-        pytest.raises(ValueError, match="other than 3 numbers"),
+        pytest.raises(PlannerError, match=r"the lines .*, which must be of size 3"),
     ):
         run_in(world, task, Uneven())
 

@@ -85,7 +85,7 @@ def standing(draw):
 
 
 @given(standing())
-@settings(deadline=None, max_examples=80)
+@settings(max_examples=80)
 def test_what_a_look_tells_is_free_up_to_what_may_hide_between_two_rays(seen):
     field, here = seen
     view = look_around(observe(field, here))
@@ -124,7 +124,7 @@ def test_as_a_rule_a_look_is_exact_to_a_centimetre():
 
 
 @given(standing(), st.floats(-10.0, 10.0))
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 def test_between_two_headings_no_more_is_free_than_along_either(seen, heading):
     field, here = seen
     view = look_around(observe(field, here))
@@ -137,7 +137,7 @@ def test_between_two_headings_no_more_is_free_than_along_either(seen, heading):
 
 
 @given(standing())
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 def test_walls_lie_where_the_centre_of_the_disc_would_be_stopped(seen):
     field, here = seen
     walls = look_around(observe(field, here)).walls
@@ -287,7 +287,7 @@ ENDS = 2.0 * math.sqrt(2.0) * promise.CELL
 
 
 @given(st.floats(-3, 3), st.floats(-3, 3))
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 def test_through_the_open_the_least_way_is_the_straight_one(x, y):
     [way] = Walls().ways_to_goal((0.3, 0.2), [(x, y)])
     straight = math.dist((x, y), (0.3, 0.2))
@@ -372,7 +372,7 @@ def seen_from(field, here):
 
 
 @given(standing(), st.floats(0.0, 4.0), st.floats(0.0, 4.0))
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 def test_what_a_place_sees_can_be_reached_straight_on(seen, x, y):
     field, here = seen
     place, _ = seen_from(field, here)
@@ -387,7 +387,7 @@ def test_what_a_place_sees_can_be_reached_straight_on(seen, x, y):
 
 
 @given(standing())
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 def test_ways_to_exits_are_free_and_lead_to_what_is_not_seen_yet(seen):
     field, here = seen
     place, exits = seen_from(field, here)

@@ -94,7 +94,7 @@ def test_clearance_of_many_points_does_not_depend_on_how_they_are_cut_up(monkeyp
     angle,
     st.floats(0.0, 0.6),
 )
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_free_distance_ends_exactly_at_the_first_contact(
     cylinders, boxes, arena, origin, heading, radius
 ):
@@ -118,7 +118,7 @@ def test_free_distance_ends_exactly_at_the_first_contact(
     st.tuples(coordinate, coordinate),
     angle,
 )
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_an_overlapping_disc_is_stopped_only_by_what_it_would_come_closer_to(
     cylinders, boxes, arena, origin, heading
 ):

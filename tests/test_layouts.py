@@ -68,7 +68,7 @@ def extent_of(item) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("layout", ALL)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(seeds, st.booleans(), st.sampled_from([(9.0, 5.0), (9.0, 9.2), (5.0, 9.0), (1.2, 0.6)]))
 def test_all_is_clear_of_start_and_goal_and_can_be_run(layout, seed, walls, goal):
     start = (1.0, 5.0) if goal[0] > 2 else (8.8, 9.0)
@@ -149,7 +149,7 @@ def test_a_trap_stands_in_the_way_between_start_and_goal(layout):
     assert max(lengths) > 8.4
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seeds)
 def test_a_semicircle_opens_towards_the_start_and_has_no_holes(seed):
     drawn = realise(asked("semicircle"), seed)
@@ -259,7 +259,7 @@ def test_rectangles_overlap_only_where_they_may(turned):
     assert inside.sum(axis=0).max() > 1
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(*[st.tuples(*[st.floats(-1, 1)] * 2, *[st.floats(0.2, 2)] * 2, st.floats(-4, 4))] * 2)
 def test_two_boxes_overlap_where_they_share_points(one, other):
     a, b = (Box(shape="box", position=v[:2], size=v[2:4], yaw=v[4]) for v in (one, other))
@@ -276,7 +276,7 @@ def test_two_boxes_overlap_where_they_share_points(one, other):
 # --- mazes
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.tuples(st.integers(1, 12), st.integers(1, 12)), seeds)
 def test_every_cell_of_a_maze_is_reached_by_exactly_one_way(cells, seed):
     upright, level = carve(cells, np.random.default_rng(seed))

@@ -112,7 +112,7 @@ def missed(summary: Summary) -> list[str]:
 # Intervals
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(TIMES)
 def test_an_interval_holds_its_estimate(pairs: list[tuple[float, float]]) -> None:
     ours, theirs = zip(*pairs, strict=True)
@@ -123,7 +123,7 @@ def test_an_interval_holds_its_estimate(pairs: list[tuple[float, float]]) -> Non
         assert one.pairs == len(pairs)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(TIMES)
 def test_exchanged_a_ratio_is_its_reciprocal_and_so_is_its_interval(
     pairs: list[tuple[float, float]],
@@ -136,7 +136,7 @@ def test_exchanged_a_ratio_is_its_reciprocal_and_so_is_its_interval(
     assert (1 / one.value, 1 / one.high, 1 / one.low) == pytest.approx(ends, rel=1e-12)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.lists(st.floats(1.0, 600.0), min_size=1, max_size=12))
 def test_the_same_on_both_sides_is_no_gain_for_certain(times: list[float]) -> None:
     n = len(times)

@@ -311,7 +311,7 @@ blocks = st.builds(
 )  # fmt: skip
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.lists(pillars, max_size=9),
     st.lists(blocks, max_size=4),
@@ -339,7 +339,7 @@ def test_it_lies_between_a_grid_that_is_too_strict_and_one_that_is_too_lax(
     assert route.length >= (lax - 2 * STEP) / _DETOUR - 0.05
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.lists(pillars, max_size=6), st.lists(blocks, max_size=2), st.floats(0, 6.3))
 def test_turning_the_whole_world_changes_nothing(cylinders, boxes, turn):
     c, s = math.cos(turn), math.sin(turn)
@@ -360,7 +360,7 @@ def test_turning_the_whole_world_changes_nothing(cylinders, boxes, turn):
         assert a.length == pytest.approx(b.length, abs=1e-7)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.lists(pillars, max_size=8), st.lists(blocks, max_size=3), pillars | blocks)
 def test_one_more_obstacle_never_makes_the_way_shorter(cylinders, boxes, another):
     ends = {"start": (0.3, 0.3), "goal": (2.7, 2.7), "size": (SIDE, SIDE)}

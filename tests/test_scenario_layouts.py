@@ -41,7 +41,7 @@ def places(scenario: Scenario, first: int = 0) -> np.ndarray:
     return np.array([item.position for item in scenario.obstacles[first:]]).reshape(-1, 2)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.integers(0, 150),
     st.floats(0.025, 0.6),

@@ -131,11 +131,12 @@ class Crashing:
 
 
 def test_a_crashing_planner_is_a_row_with_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fuzzyq_bullet.episode.make_planner", lambda settings, rng: Crashing())
+    monkeypatch.setattr("fuzzyq_bullet.episode.build_planner", lambda settings, rng: Crashing())
     row = run_job(jobs_for(5, 1)[0]).row
     assert row.outcome == "error"
     # One line, and the same each time: no address.
-    assert row.error == "RuntimeError: lost in <object object at 0x…>"
+    what = "stopped by RuntimeError: lost in <object object at 0x…>, after 0.00 s"
+    assert (row.error or "").startswith(f"planner improved-fuzzy: {what} ({__file__}:")
     assert row.feasible is True
     assert row.steps is row.digest is row.collisions is None
 

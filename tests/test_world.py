@@ -125,7 +125,7 @@ obstacle = st.one_of(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     obstacles=st.lists(obstacle, max_size=25),
     origin=st.tuples(st.floats(0.2, 5.8), st.floats(0.2, 5.8)),

@@ -60,7 +60,7 @@ def _files_of(path: str, problems: list[str]) -> list[Path]:
             matches = sorted(glob.glob(path, recursive=True))  # noqa: PTH207
             files = [Path(match) for match in matches if match.endswith(ENDINGS)]
             return [file for file in files if file.is_file()]
-        _refuse_dead_link(Path(path))
+        refuse_dead_link(Path(path))
         return [find_scenario(path)]
     except UserError as error:
         problems += error.problems
@@ -78,14 +78,14 @@ def _below(folder: Path, problems: list[str]) -> Iterator[Path]:
         for name in files:
             if name.endswith(ENDINGS) and not name.startswith("."):
                 try:
-                    _refuse_dead_link(Path(place, name))
+                    refuse_dead_link(Path(place, name))
                 except UserError as error:
                     problems += error.problems
                 else:
                     yield Path(place, name)
 
 
-def _refuse_dead_link(path: Path) -> None:
+def refuse_dead_link(path: Path) -> None:
     """Say so if a link leads nowhere, rather than that there is no such file.
 
     Raises:

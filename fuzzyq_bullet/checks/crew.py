@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-import selectors
+import queue
+import secrets
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -58,6 +60,7 @@ class Crew:
         self._timeout = timeout
         self._memory_mb = memory_mb
         self._workers: list[_Worker] = []
+        self._answers: queue.SimpleQueue[tuple[_Worker, Answer]] = queue.SimpleQueue()
         self._lost = 0
 
     def __enter__(self) -> Crew:
@@ -126,27 +129,26 @@ class Crew:
             worker.give(*waiting.popleft())
         room = self._most - len(self._workers)
         for _ in range(min(room, len(waiting) - starting)):
-            self._workers.append(_Worker(self._plugins, self._memory_mb))
+            self._workers.append(_Worker(self._plugins, self._memory_mb, self._answers))
 
     def _collect(self) -> Iterator[tuple[int, Answer, float]]:
         """Wait for whatever happens first, and yield what it finishes."""
-        with selectors.DefaultSelector() as selector:
-            for one in self._workers:
-                selector.register(one.answers, selectors.EVENT_READ, one)
-            soonest = min((one.deadline for one in self._workers), default=0.0)
-            events = selector.select(max(0.0, min(soonest - time.monotonic(), 1.0)))
-        for key, _ in events:
-            worker: _Worker = key.data
-            answer = worker.listen()
-            if answer is None:
-                continue
+        soonest = min((one.deadline for one in self._workers), default=0.0)
+        try:
+            wait = max(0.0, min(soonest - time.monotonic(), 1.0))
+            worker, answer = self._answers.get(timeout=wait)
+        except queue.Empty:
+            pass
+        else:
+            if worker not in self._workers:  # it was cut before it could answer
+                return
             if "unable" in answer:
                 raise UserError(*answer["unable"])
             if "ready" in answer:
                 worker.be_ready()
                 self._lost = 0
-                continue
-            yield from self._settle(worker, answer)
+            else:
+                yield from self._settle(worker, answer)
         now = time.monotonic()
         for late in [one for one in self._workers if now > one.deadline]:
             limit = late.deadline - late.since
@@ -176,8 +178,19 @@ class Crew:
 class _Worker:
     """One process and the pipes to it."""
 
-    def __init__(self, plugins: Sequence[str], memory_mb: int) -> None:
-        settings = {"plugins": list(plugins), "memory_mb": memory_mb, "parent": os.getpid()}
+    def __init__(
+        self,
+        plugins: Sequence[str],
+        memory_mb: int,
+        answers: queue.SimpleQueue[tuple[_Worker, Answer]],
+    ) -> None:
+        self._name = secrets.token_hex(8)
+        settings = {
+            "plugins": list(plugins),
+            "memory_mb": memory_mb,
+            "parent": os.getpid(),
+            "name": self._name,
+        }
         path = [os.path.abspath(entry) for entry in sys.path]  # noqa: PTH100  ("" is the folder)
         one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
         self._process = subprocess.Popen(
@@ -189,9 +202,9 @@ class _Worker:
             # as a whole.
             start_new_session=True,
         )
-        assert self._process.stdout is not None
-        self.answers = self._process.stdout.fileno()
-        self._said = b""
+        # A thread, not a selector: Windows has none for pipes.
+        self._listener = threading.Thread(target=self._listen, args=(answers,), daemon=True)
+        self._listener.start()
         self.ready = False
         self.order: int | None = None
         self._writes: str | None = None
@@ -211,29 +224,29 @@ class _Worker:
             self._process.stdin.write(json.dumps(order).encode() + b"\n")
             self._process.stdin.flush()
 
-    def listen(self) -> Answer | None:
-        """Return what it says; None while that is not finished."""
-        heard = os.read(self.answers, 1 << 20)
-        if not heard:
-            return {"died": _end_in_words(self._process.wait())}
-        self._said += heard
-        if not self._said.endswith(b"\n"):
-            return None
-        line, self._said = self._said, b""
-        answer: Answer = json.loads(line)
-        return answer
+    def _listen(self, answers: queue.SimpleQueue[tuple[_Worker, Answer]]) -> None:
+        """Hand on whatever it says, and at last how it ended."""
+        assert self._process.stdout is not None
+        with suppress(ValueError):  # what it said as it was ended
+            for line in self._process.stdout:
+                answers.put((self, json.loads(line)))
+        answers.put((self, {"died": _end_in_words(self._process.wait())}))
 
     def end(self) -> None:
         """End the process and all that it started."""
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
+        if hasattr(os, "killpg"):
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+        else:
+            self._process.kill()
         self._process.wait()
+        self._listener.join()  # to the end of the pipe, which is there with that of the process
         for pipe in (self._process.stdin, self._process.stdout):
             assert pipe is not None
             with suppress(BrokenPipeError):
                 pipe.close()
         if self._writes is not None:
-            remove_parts(Path(self._writes))
+            remove_parts(Path(self._writes), self._name)
 
 
 def _end_in_words(code: int) -> str:
@@ -243,7 +256,7 @@ def _end_in_words(code: int) -> str:
     known = {one.value: one.name for one in signal.Signals}
     name = known.get(-code, f"signal {-code}")
     why = (signal.strsignal(-code) or "").lower()
-    if -code == signal.SIGKILL:
+    if known.get(-code) == "SIGKILL":
         why = "killed from outside: the machine is out of memory, or somebody ended it"
     return f"its process crashed: {name} ({why})"
 

@@ -8,30 +8,42 @@ from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.checks.explain import Source, in_words, nearest, touched, whereabouts
 from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
-from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.metrics import Result, result_of
+from fuzzyq_bullet.early_warnings import NO_WAY, early_warnings
+from fuzzyq_bullet.errors import PlannerError, UserError
+from fuzzyq_bullet.metrics import Result, has_way, result_of
 from fuzzyq_bullet.scenario import Scenario, load_scenario, realise, with_options
 from fuzzyq_bullet.verdict import missed
+from fuzzyq_bullet.wording import error_in_words
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
+
+OUT_OF_MEMORY = "ran out of the memory that it may use (--memory)"
 
 
 def drive(job: Job) -> Verdict:
     """Run a scenario and judge it; whatever goes wrong in it is part of the verdict."""
     verdict = Verdict(name=job.name, file=job.file, status="passed")
     try:
-        scenario = load_scenario(job.file, policies=job.planner is None)
-        scenario = with_options(scenario, planner=job.planner, seed=job.seed, drive=job.drive)
-        scenario = realise(scenario)
+        given = load_scenario(job.file, policies=job.planner is None)
+        given = with_options(given, planner=job.planner, seed=job.seed, drive=job.drive)
+        scenario = realise(given)
+        verdict.warnings = early_warnings(job.file, given, scenario)
         trajectory = _run(scenario)
         verdict = judge(trajectory, result_of(trajectory), verdict)
+        if NO_WAY in verdict.why:  # said already
+            verdict.warnings = [one for one in verdict.warnings if not one.endswith(NO_WAY)]
+    except PlannerError as error:
+        memory = isinstance(error.__cause__, MemoryError)
+        return _broken(job, verdict, OUT_OF_MEMORY if memory else str(error))
     except UserError as error:
         why = [_named(problem, job.file) for problem in error.problems]
         return verdict.model_copy(update={"status": "invalid", "why": why})
     except MemoryError:
-        return _broken(job, verdict, "ran out of the memory that it may use (--memory)")
+        return _broken(job, verdict, OUT_OF_MEMORY)
     except Exception as error:  # of a planner of the user's own, or ours: the others go on
+        return _broken(job, verdict, _in_a_line(error))
+    except (SystemExit, KeyboardInterrupt) as error:  # of a scenario's settings, or a sensor's
         return _broken(job, verdict, _in_a_line(error))
     if job.record and (job.keep == "all" or (job.keep == "failed" and verdict.why)):
         _keep(trajectory, job.record, verdict)
@@ -51,6 +63,8 @@ def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
     if touch is None and least is not None and wanted is not None and least < wanted:
         touch = nearest(trajectory, source)
     why = list(misses)
+    if expect.outcome == "goal" != result.outcome and has_way(trajectory.scenario) is False:
+        why.insert(0, NO_WAY)  # before what came of it
     if touch is not None:
         why.append(in_words(touch, verdict.file))
     elif result.outcome in ("timeout", "stuck"):
@@ -100,6 +114,5 @@ def _named(problem: str, file: str) -> str:
 def _in_a_line(error: BaseException) -> str:
     """Say what an exception is and where it comes from, as a traceback's last lines would."""
     last = traceback.extract_tb(error.__traceback__)[-1]
-    message = " ".join(str(error).split())[:300]
-    what = type(error).__name__ + (f": {message}" if message else "")
-    return f"stopped by an error: {what} ({last.filename}:{last.lineno}, in {last.name})"
+    place = f"({last.filename}:{last.lineno}, in {last.name})"
+    return f"stopped by an error: {error_in_words(error)} {place}"

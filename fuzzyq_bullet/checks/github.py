@@ -19,6 +19,10 @@ def verdict_commands(verdict: Verdict) -> list[str]:
         line = int(placed["line"] or 1) if placed else verdict.line
         text = "\n".join([*verdict.why, *([verdict.replay] if verdict.result else [])])
         told.append(_command("error", verdict.file, line, verdict.name, text))
+    for warning in verdict.warnings:
+        placed = _PLACE.match(warning)
+        line = int(placed["line"] or 1) if placed else 1
+        told.append(_command("warning", verdict.file, line, verdict.name, warning))
     if verdict.changes:
         text = "\n".join(verdict.changes)
         told.append(_command("warning", verdict.file, verdict.line, verdict.name, text))
@@ -31,6 +35,11 @@ def problem_command(problem: str) -> str:
     if placed is None:
         return f"::error title=fuzzyq check::{_data(problem)}"
     return _command("error", placed["file"], int(placed["line"] or 1), "fuzzyq check", problem)
+
+
+def harmless(line: str) -> str:
+    """Return a line for people that GitHub takes for no command, whatever names it holds."""
+    return line.replace("::", ": :").replace("##[", "## [")
 
 
 def _command(kind: str, file: str, line: int, title: str, text: str) -> str:

@@ -9,10 +9,9 @@ from pathlib import Path
 from fuzzyq_bullet.checks.explain import Source
 from fuzzyq_bullet.checks.verdict import Job, Keep
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.planning.registry import planner_names
+from fuzzyq_bullet.outputs import run_name, scenario_inputs
 from fuzzyq_bullet.scenario import load_scenario, with_options
-from fuzzyq_bullet.scenario.options import MAX_SEED
-from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+from fuzzyq_bullet.scenario.options import MAX_SEED, check_options
 
 
 @dataclass(frozen=True)
@@ -25,7 +24,7 @@ class Plan:
         drive: Drive to use instead of their own.
         repeat: How many seeds, one after the other.
         keep: Of which runs the trajectory is kept.
-        folder: Where.
+        folder: Where; it must outlive the jobs.
     """
 
     planner: str | None = None
@@ -42,6 +41,8 @@ class Jobs:
 
     jobs: list[Job] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+    inputs: list[Path] = field(default_factory=list)
+    """All files that the jobs read."""
 
 
 def planned(files: Sequence[Path], plan: Plan) -> Jobs:
@@ -65,7 +66,12 @@ def _add(file: Path, plan: Plan, names: dict[str, Path], all_of: Jobs) -> None:
         if first + plan.repeat - 1 > MAX_SEED:
             raise UserError(f"{file}: seed: {first} and {plan.repeat - 1} more are too many")
         try:
-            with_options(scenario, planner=plan.planner, drive=plan.drive)
+            asked = with_options(
+                scenario,
+                planner=plan.planner,
+                drive=plan.drive,
+                seed=plan.seed if plan.repeat == 1 else None,
+            )
         except UserError as error:
             raise UserError(*(f"{file}: --{problem}" for problem in error.problems)) from error
         if scenario.name in names:
@@ -78,9 +84,12 @@ def _add(file: Path, plan: Plan, names: dict[str, Path], all_of: Jobs) -> None:
         all_of.problems += error.problems
         return
     names[scenario.name] = file
+    all_of.inputs += scenario_inputs(file, asked)
     for i in range(plan.repeat):
-        name = scenario.name + (f"-seed-{first + i}" if plan.repeat > 1 else "")
-        record = None if plan.folder is None else str(plan.folder / f"{name}.npz")
+        ending = f"-seed-{first + i}" if plan.repeat > 1 else ""
+        name = scenario.name + ending
+        kept = f"{run_name(scenario, asked)}{ending}.npz"
+        record = None if plan.folder is None else str(plan.folder / kept)
         own = plan.seed is None and i == 0
         all_of.jobs.append(
             Job(
@@ -96,13 +105,7 @@ def _add(file: Path, plan: Plan, names: dict[str, Path], all_of: Jobs) -> None:
 
 
 def _check_options(plan: Plan) -> None:
-    if plan.planner is not None and plan.planner not in planner_names():
-        hint = did_you_mean(plan.planner, planner_names())
-        allowed = ", ".join(planner_names())
-        raise UserError(f"--planner: no planner {shorten(plan.planner)}; {hint}allowed: {allowed}")
-    if plan.drive not in (None, "wheels", "kinematic"):
-        hint = did_you_mean(plan.drive, ("wheels", "kinematic"))
-        what = f"--drive: no drive {shorten(plan.drive)}"
-        raise UserError(f"{what}; {hint}allowed: wheels, kinematic")
-    if plan.seed is not None and not 0 <= plan.seed <= MAX_SEED:
-        raise UserError(f"--seed: must be from 0 to {MAX_SEED}, got {plan.seed}")
+    try:
+        check_options(planner=plan.planner, seed=plan.seed, drive=plan.drive)
+    except UserError as error:
+        raise UserError(*(f"--{problem}" for problem in error.problems)) from error

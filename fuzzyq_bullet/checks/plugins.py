@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib
 import importlib.util
+import signal
 import sys
 from collections.abc import Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
+from types import ModuleType
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.wording import error_in_words
 
 
 def load_plugins(names: Sequence[str]) -> None:
     """Import modules, by name or by the path of a ``.py`` file.
 
+    What they print meanwhile goes to stderr: stdout is for results.
+
     Raises:
-        UserError: If one is not there, or fails while it is imported.
+        UserError: If one is not there, or fails or exits while it is imported.
     """
     for name in names:
-        _load(name)
+        with redirect_stdout(sys.stderr):
+            _load(name)
 
 
 def _load(name: str) -> None:
@@ -28,27 +36,52 @@ def _load(name: str) -> None:
         else:
             _add_folder(Path())  # which the command has not on its path, as python -m has
             importlib.import_module(name)
+    except KeyboardInterrupt as error:  # a person's, or that of the module
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            raise
+        raise UserError(f"--plugin: {name} cannot be imported: KeyboardInterrupt") from error
+    except SystemExit as error:
+        raise UserError(f"--plugin: {name} cannot be imported: it tried to exit") from error
     except Exception as error:  # whatever a user's module raises
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
-        raise UserError(f"--plugin: {name} cannot be imported: {reason}") from error
+        raise UserError(f"--plugin: {name} cannot be imported: {error_in_words(error)}") from error
 
 
 def _load_file(path: Path) -> None:
-    if path.stem in sys.modules:  # imported before, perhaps by another name
-        known = getattr(sys.modules[path.stem], "__file__", None)
-        if known and Path(known).resolve() == path.resolve():
-            return
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    if spec is None or spec.loader is None or not path.is_file():
+    if not path.is_file():
         raise FileNotFoundError("there is no such file")
+    name = _module_name(path)
+    if name in sys.modules:  # imported before, perhaps by another path
+        return
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise ImportError("it is no Python file")
     _add_folder(path.parent)  # for what lies beside it
     module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module
+    sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
     except BaseException:
-        del sys.modules[path.stem]
+        del sys.modules[name]
         raise
+
+
+def _module_name(path: Path) -> str:
+    """Return what a file is called as a module: by its own name, if nothing else has that.
+
+    So it can be imported by others beside it, and takes the place of no module that is there.
+    """
+    if _is_of(sys.modules.get(path.stem), path):
+        return path.stem
+    taken = path.stem in sys.modules or path.stem in sys.stdlib_module_names
+    if not taken and path.stem.isidentifier() and importlib.util.find_spec(path.stem) is None:
+        return path.stem
+    where = hashlib.sha256(str(path.resolve()).encode()).hexdigest()[:8]
+    return f"fuzzyq_plugin_{where}_{path.stem}"
+
+
+def _is_of(module: ModuleType | None, path: Path) -> bool:
+    known = getattr(module, "__file__", None)
+    return bool(known) and Path(str(known)).resolve() == path.resolve()
 
 
 def _add_folder(folder: Path) -> None:

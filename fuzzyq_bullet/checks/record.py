@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import platform
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -12,8 +13,9 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from fuzzyq_bullet.checks.verdict import Verdict
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.files import write_text
+from fuzzyq_bullet.files import read_bytes, write_text
 from fuzzyq_bullet.metrics import Result
+from fuzzyq_bullet.platforms import pybullet_in_words
 
 FILE = "check-record.json"
 """Its name, one in each folder that has scenarios."""
@@ -109,22 +111,21 @@ class Records:
         return self._records[folder]
 
 
+def records_beside(files: Sequence[Path]) -> list[Path]:
+    """Return where the records of scenario files are, or would be."""
+    return [folder / FILE for folder in dict.fromkeys(file.parent for file in files)]
+
+
 def read(path: Path) -> Record:
     """Read a record; an empty one where there is none.
 
     Raises:
         UserError: If it cannot be read, or is none of this format.
     """
-    try:
-        with path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)
-    except FileNotFoundError:
+    if not os.path.lexists(path):
         return Record()
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror or error}") from error
+    content = read_bytes(path, what="a record of fuzzyq check --record", most=MAX_BYTES)
     try:
-        if len(content) > MAX_BYTES:
-            raise ValueError("too large")
         return Record.model_validate_json(content)
     except (ValidationError, ValueError) as error:
         raise UserError(f"{path}: not a record of fuzzyq check --record; delete it") from error
@@ -163,7 +164,7 @@ def this_platform() -> str:
 
     With the processor: libraries choose their arithmetic by it.
     """
-    packages = (f"{package} {version(package)}" for package in ("numpy", "pybullet"))
+    packages = [f"numpy {version('numpy')}", pybullet_in_words()]
     return ", ".join([platform.system(), platform.machine(), _processor(), *packages])
 
 

@@ -82,6 +82,7 @@ class Verdict(BaseModel):
         status: ``passed``; ``failed``: it missed what it expects; ``broken``: it crashed, hung or
             ran out of memory; ``invalid``: it cannot be run at all.
         why: What is wrong, a line each; empty when it passed.
+        warnings: What is allowed in the scenario and yet hardly meant, a line each.
         line: The line of the file that this is about.
         touch: What it touched, or came too near to.
         replay: The command that drives it again.
@@ -98,6 +99,7 @@ class Verdict(BaseModel):
     file: str
     status: Status
     why: list[str] = []
+    warnings: list[str] = []
     line: int = 1
     touch: Touch | None = None
     replay: str = ""

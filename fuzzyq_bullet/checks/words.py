@@ -29,6 +29,7 @@ def lines_of(verdict: Verdict, width: int = 0) -> list[str]:
         if verdict.status == "passed" and result.outcome != "goal":
             line += "  as expected"
     lines = [line.rstrip(), *(f"      {reason}" for reason in verdict.why)]
+    lines += [f"      warning: {warning}" for warning in verdict.warnings]
     lines += [f"      changed: {change}" for change in verdict.changes]
     lines += [f"      no film: {verdict.no_film}"] if verdict.no_film else []
     if verdict.status in ("failed", "broken") and verdict.replay:

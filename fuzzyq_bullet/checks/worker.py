@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import json
 import os
-import resource
 import signal
 import sys
 import threading
 import time
 from typing import Any
+
+try:
+    import resource
+except ImportError:  # Windows, where no memory limit is kept
+    resource = None  # type: ignore[assignment]
 
 COMMAND = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
@@ -35,15 +39,19 @@ def main(settings: dict[str, Any]) -> None:
 
     Args:
         settings: ``plugins``: modules to import first; ``memory_mb``: most memory (MB, 2²⁰ bytes);
-            ``parent``: the process without which this one has no purpose.
+            ``parent``: the process without which this one has no purpose; ``name``: what marks the
+            files that it has half written.
     """
     # What planners and libraries print must not get between the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     _end_with(settings["parent"])
+    # No terminal's Ctrl-C comes here, so a KeyboardInterrupt is always a planner's own.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     limit = int(settings["memory_mb"]) * 2**20
-    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    if resource is not None:
+        resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
     def answer(**told: Any) -> None:
         try:
@@ -54,7 +62,9 @@ def main(settings: dict[str, Any]) -> None:
 
     from fuzzyq_bullet.checks.plugins import load_plugins
     from fuzzyq_bullet.errors import UserError
+    from fuzzyq_bullet.files import own_parts
 
+    own_parts(settings["name"])
     try:
         load_plugins(settings["plugins"])
         from fuzzyq_bullet.checks import drive
@@ -67,9 +77,7 @@ def main(settings: dict[str, Any]) -> None:
     answer(ready=True)
     for line in sys.stdin:
         order = json.loads(line)
-        # By the kernel, which no hang in a library can keep from it.
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.alarm(int(order["timeout"]) + GRACE)
+        _end_within(int(order["timeout"]) + GRACE)
         if "film" in order:
             try:
                 drive.make_film(FilmJob.model_validate(order["film"]))
@@ -80,14 +88,21 @@ def main(settings: dict[str, Any]) -> None:
             job = Job.model_validate(order["job"])
             verdict = drive.drive(job)
             answer(verdict=verdict.model_dump(mode="json"), retire=_resident() > RETIRE_AT * limit)
-        signal.alarm(0)
+        _end_within(0)
+
+
+def _end_within(seconds: int) -> None:
+    """Let the kernel end this process, which no hang in a library can keep from it; 0 for never."""
+    if hasattr(signal, "alarm"):
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.alarm(seconds)
 
 
 def _resident() -> int:
     """Return the memory that this process holds now (bytes)."""
     try:
         with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123
-            return int(file.read().split()[1]) * resource.getpagesize()
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except OSError:
         return 0
 

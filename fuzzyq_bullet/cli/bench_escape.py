@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.cli.sharing import Jobs, Json, Runs, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
@@ -31,6 +32,7 @@ def escape(
     seed: SweepSeed = 0,
     jobs: Jobs = None,
     out: Annotated[Path, typer.Option(help="Folder of the sweep.", **FOLDER)] = Path("out/escape"),
+    plugin: PluginOption = None,
     json: Json = False,
 ) -> None:
     """Run a planner in random fields, traps and rectangles; print how often it finds its way.
@@ -68,7 +70,14 @@ def escape(
 
     settings = {"sweep": "escape", "version": __version__, **plan.described()}
     with sweep_bar() as progress:
-        done = sweep("escape", tasks, out, settings, pool=Pool(jobs), progress=progress)
+        done = sweep(
+            "escape",
+            tasks,
+            out,
+            settings,
+            pool=Pool(jobs, plugins=tuple(plugin or [])),
+            progress=progress,
+        )
     lines = table_of(done.rows)
     if json:
         typer.echo(as_json(lines, settings, done.state.rate))

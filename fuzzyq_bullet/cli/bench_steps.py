@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.cli.sharing import Backend, Jobs, Json, Scheduler, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
@@ -40,6 +41,7 @@ def steps(
     backend: Backend = "loky",
     scheduler: Scheduler = None,
     out: Annotated[Path, typer.Option(help="Folder of the sweeps.", **FOLDER)] = Path("out/steps"),
+    plugin: PluginOption = None,
     json: Json = False,
 ) -> None:
     """Print the mean number of steps to the goal beside the paper's, and what failures do to it.
@@ -60,7 +62,7 @@ def steps(
 
     from fuzzyq_bullet.files import writable_files, write_text
 
-    with pool_of(backend, scheduler, jobs) as pool:
+    with pool_of(backend, scheduler, jobs, plugin or []) as pool:
         (text,) = writable_files(out, ["steps.json"])
         best, searched = (given, None) if given else _search(moved_by, grid, out, pool)
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.cli.sharing import Backend, Jobs, Json, Runs, Scheduler, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
@@ -31,6 +32,7 @@ def success(
     backend: Backend = "loky",
     scheduler: Scheduler = None,
     out: Annotated[Path, typer.Option(help="Folder of the sweep.", **FOLDER)] = Path("out/success"),
+    plugin: PluginOption = None,
     json: Json = False,
 ) -> None:
     """Run the planners in the same random fields; print how often each reaches the goal.
@@ -66,7 +68,7 @@ def success(
     from fuzzyq_bullet.version import __version__
 
     settings = {"sweep": "success", "version": __version__, **described}
-    with pool_of(backend, scheduler, jobs) as pool:
+    with pool_of(backend, scheduler, jobs, plugin or []) as pool:
         text, image = writable_files(out, ["success.json", "success.png"])
         with sweep_bar() as progress:
             done = sweep(

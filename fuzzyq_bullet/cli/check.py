@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+import tempfile
 import textwrap
 import time
 from enum import Enum
@@ -13,12 +14,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.film import ReplaceOption
+from fuzzyq_bullet.cli.folder import FILE, FOLDER
 from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from fuzzyq_bullet.checks.crew import Crew
     from fuzzyq_bullet.checks.verdict import Verdict
@@ -60,9 +62,7 @@ def check(
     memory: Annotated[
         int, typer.Option(min=256, max=1_000_000, help="Memory (MB) for one run.")
     ] = 2048,
-    junit: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write a report as JUnit XML.")
-    ] = None,
+    junit: Annotated[Path | None, typer.Option(help="Write a report as JUnit XML.", **FILE)] = None,
     github: Annotated[
         bool, typer.Option("--github", help="Print annotations for GitHub Actions.")
     ] = False,
@@ -71,6 +71,7 @@ def check(
         Video, typer.Option(help="Of which runs to keep a film and its record in --out.")
     ] = Video.none,
     out: Annotated[Path, typer.Option(help="Folder for films.", **FOLDER)] = Path("out/check"),
+    replace: ReplaceOption = False,
     record: Annotated[
         bool, typer.Option("--record", help="Note how they behave now, beside the scenarios.")
     ] = False,
@@ -88,59 +89,57 @@ def check(
     """
     from fuzzyq_bullet.checks.collect import find
     from fuzzyq_bullet.checks.crew import Crew
-    from fuzzyq_bullet.checks.github import problem_command
+    from fuzzyq_bullet.checks.github import harmless, problem_command
     from fuzzyq_bullet.checks.junit import junit_xml
     from fuzzyq_bullet.checks.plan import Plan, planned
-    from fuzzyq_bullet.checks.plugins import load_plugins
-    from fuzzyq_bullet.checks.record import Records
+    from fuzzyq_bullet.checks.record import Records, records_beside
     from fuzzyq_bullet.checks.report import as_json
     from fuzzyq_bullet.checks.words import summary
     from fuzzyq_bullet.cli.console import say
     from fuzzyq_bullet.cli.process import say_error
-    from fuzzyq_bullet.files import writable_files, writable_folder, write_text
+    from fuzzyq_bullet.files import refuse_inputs, writable_files, writable_folder, write_text
+    from fuzzyq_bullet.outputs import plugin_inputs
+    from fuzzyq_bullet.platforms import cores
 
     if record and strict:
         raise UserError("--record and --strict exclude each other: one notes, the other compares")
     if record:
         _refuse_bundled(paths)
-    load_plugins(plugin or [])
     found = find(paths)
-    folder = None if video is Video.none else writable_folder(out)
-    # Whether a run behaves otherwise than recorded is known when its process is done with it.
-    keep = Video.all if strict and video is Video.failed else video
-    plan = planned(found.files, Plan(planner, seed, drive, repeat, keep=keep.value, folder=folder))
-    if not plan.jobs:
-        raise UserError(*found.problems, *plan.problems)
-    problems = [*found.problems, *plan.problems]
-    if junit is not None:
-        writable_files(junit.parent, [junit.name])  # what cannot be is told before the work
-    show = _printer(json=json, github=github, width=max(len(job.name) for job in plan.jobs))
-    begun = time.monotonic()
-    records = Records()
-    with Crew(
-        jobs or len(os.sched_getaffinity(0)),
-        plugins=plugin or [],
-        timeout=timeout,
-        memory_mb=memory,
-    ) as crew:
-        verdicts: list[Verdict] = []
-        waiting: dict[int, Verdict] = {}
-        for i, verdict in crew.check(plan.jobs):
-            waiting[i] = verdict
-            # In the order asked for, whatever finishes first.
-            while len(verdicts) in waiting:
-                verdict = waiting.pop(len(verdicts))
-                if not record:
-                    verdict.changes = records.changes(verdict)
-                    if strict and verdict.changes and verdict.status == "passed":
-                        verdict.status = "failed"
-                        verdict.why = ["behaves otherwise than recorded (--strict)"]
-                if video is Video.failed and verdict.record and verdict.status == "passed":
-                    Path(verdict.record).unlink(missing_ok=True)
-                    verdict.record = None
-                verdicts.append(verdict)
-                show(verdict)
-        _make_films(crew, verdicts, say)
+    if video is not Video.none:
+        writable_folder(out)
+    with tempfile.TemporaryDirectory(prefix="fuzzyq-check-") as kept:
+        # Whether a run behaves otherwise than recorded is known when its process is done with it.
+        keep = Video.all if strict and video is Video.failed else video
+        folder = None if video is Video.none else Path(kept)
+        plan = planned(found.files, Plan(planner, seed, drive, repeat, keep.value, folder))
+        if not plan.jobs:
+            raise UserError(*found.problems, *plan.problems)
+        problems = [*found.problems, *plan.problems]
+        written = [out / Path(job.record).name for job in plan.jobs if job.record is not None]
+        written += [path.with_suffix(".mp4") for path in written]
+        if junit is not None:
+            writable_files(junit.parent, [junit.name])  # what cannot be is told before the work
+            written.append(junit)
+        inputs = [*plan.inputs, *plugin_inputs(plugin or []), *records_beside(plan.inputs)]
+        refuse_inputs(written, inputs)
+        begun = time.monotonic()
+        records = Records()
+        show = _printer(json=json, github=github, width=max(len(job.name) for job in plan.jobs))
+
+        def settle(verdict: Verdict) -> None:
+            if not record:
+                verdict.changes = records.changes(verdict)
+                if strict and verdict.changes and verdict.status == "passed":
+                    verdict.status = "failed"
+                    verdict.why = ["behaves otherwise than recorded (--strict)"]
+            if verdict.record is not None:
+                _put_away(verdict, None if _is_dropped(verdict, video) else out, replace=replace)
+            show(verdict)
+
+        with Crew(jobs or cores(), plugins=plugin or [], timeout=timeout, memory_mb=memory) as crew:
+            verdicts = _settled(crew.check(plan.jobs), settle)
+            _make_films(crew, verdicts, say)
     if record:
         for path in records.write(verdicts):
             say(f"recorded in {path}")
@@ -148,7 +147,7 @@ def check(
         say(f"{records.missing} not compared: not recorded yet (fuzzyq check --record)")
     problems += records.problems
     for problem in problems:
-        say_error(problem)
+        say_error(harmless(problem) if github else problem)
         if github:
             typer.echo(problem_command(problem), err=json)
     seconds = time.monotonic() - begun
@@ -159,19 +158,66 @@ def check(
         typer.echo(as_json(verdicts, problems, seconds))
     if problems or any(verdict.status == "invalid" for verdict in verdicts):
         raise typer.Exit(2)
-    if any(verdict.status != "passed" for verdict in verdicts):
+    if len(verdicts) < len(plan.jobs) or any(one.status != "passed" for one in verdicts):
         raise typer.Exit(1)
+
+
+def _settled(
+    finished: Iterable[tuple[int, Verdict]], settle: Callable[[Verdict], None]
+) -> list[Verdict]:
+    """Return verdicts in the order asked for, each settled as soon as all before it are."""
+    verdicts: list[Verdict] = []
+    waiting: dict[int, Verdict] = {}
+    for i, verdict in finished:
+        waiting[i] = verdict
+        while len(verdicts) in waiting:
+            verdicts.append(waiting.pop(len(verdicts)))
+            settle(verdicts[-1])
+    return verdicts
+
+
+def _is_dropped(verdict: Verdict, video: Video) -> bool:
+    return video is Video.failed and verdict.status == "passed"
+
+
+def _put_away(verdict: Verdict, folder: Path | None, *, replace: bool) -> None:
+    """Move the record of a run to where it is kept; without a folder it is removed.
+
+    It takes the place of one of the same run alone. That it cannot be kept changes no verdict.
+    """
+    from fuzzyq_bullet.files import written_beside
+    from fuzzyq_bullet.outputs import refuse_other_run
+    from fuzzyq_bullet.trajectory import Trajectory
+
+    source = Path(str(verdict.record))
+    verdict.record = None
+    try:
+        if folder is None:
+            return
+        target = folder / source.name
+        if not replace:
+            film = target.with_suffix(".mp4")
+            refuse_other_run(target, [film], Trajectory.load(source).scenario)
+        with written_beside(target) as part:
+            shutil.copyfile(source, part)
+        verdict.record = str(target)
+    except UserError as error:
+        verdict.no_film = str(error)
+    finally:
+        source.unlink(missing_ok=True)
 
 
 def _printer(*, json: bool, github: bool, width: int) -> Callable[[Verdict], None]:
     """Return what prints a verdict: on stdout, or on stderr where stdout is for JSON alone."""
-    from fuzzyq_bullet.checks.github import verdict_commands
+    from fuzzyq_bullet.checks.github import harmless, verdict_commands
     from fuzzyq_bullet.checks.words import lines_of
 
     terminal = (sys.stderr if json else sys.stdout).isatty()
 
     def show(verdict: Verdict) -> None:
         lines = lines_of(verdict, width)
+        if github:
+            lines = [harmless(line) for line in lines]
         if terminal:
             lines = _fitted(lines)
         for line in [*lines, *(verdict_commands(verdict) if github else [])]:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FOLDER
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.figures import FIGURES, drawing
 
@@ -17,14 +18,19 @@ def figure(
         int, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper.")
     ],
     out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
+    plugin: PluginOption = None,
 ) -> None:
     """Draw a figure of the paper and print the files written.
 
     Raises:
         UserError: If no figure has this number, or the folder cannot be written to.
     """
+    from fuzzyq_bullet.files import refuse_inputs
+    from fuzzyq_bullet.outputs import plugin_inputs
+
     if number not in FIGURES:
         known = "; ".join(f"{key} ({entry.shows})" for key, entry in sorted(FIGURES.items()))
         raise UserError(f"NUMBER: no figure {number}; there are: {known}")
+    refuse_inputs([out / f"figure{number}.png"], plugin_inputs(plugin or []))
     for path in drawing(number)(out):
         typer.echo(path)

@@ -28,6 +28,10 @@ SpeedOption: TypeAlias = Annotated[
     typer.Option(help="Playback speed of the video; 1 is real time.", callback=_check_speed),
 ]
 
+ReplaceOption: TypeAlias = Annotated[
+    bool, typer.Option("--replace", help="Replace files of another run of that name.")
+]
+
 
 def film_name(name: str, speed: float) -> str:
     """Return ``NAME.mp4``, or ``NAME-4x.mp4``: a film at another speed replaces no other."""

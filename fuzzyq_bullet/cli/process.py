@@ -61,6 +61,10 @@ def _status_of(command: Callable[[], int]) -> int:
     try:
         status = command()
         sys.stdout.flush()
+        sys.stdout = sys.stderr  # what a plugin still says as it is unloaded is no result
+    except MemoryError:
+        say_error("out of memory")
+        return BAD_INPUT
     except UserError as error:
         for problem in error.problems:
             say_error(problem)
@@ -76,7 +80,12 @@ def say_error(problem: str) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_SIGNALS = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
+"""What asks a process to end; Windows has no SIGHUP."""
+_TIMER = getattr(signal, "SIGALRM", None)
+"""What tries an interrupt again a little later; nothing on Windows, where none is put off."""
 
 
 def _catch_signals() -> None:
@@ -89,11 +98,11 @@ def _catch_signals() -> None:
         if raised is not None and now - raised <= _GRACE:
             return
         if asked is None:
-            if signum == signal.SIGALRM:
+            if signum == _TIMER:
                 return
             asked = signum, now
         signum, since = asked
-        if _imports(frame) and now - since < _GRACE:
+        if _TIMER is not None and _imports(frame) and now - since < _GRACE:
             signal.setitimer(signal.ITIMER_REAL, _SOON)
             return
         raised, asked = now, None
@@ -104,7 +113,7 @@ def _catch_signals() -> None:
     def again(what: sys.UnraisableHookArgs) -> None:
         # It came while a destructor or a callback ran, which let nothing through.
         nonlocal raised, asked
-        if not isinstance(what.exc_value, Stopped):
+        if _TIMER is None or not isinstance(what.exc_value, Stopped):
             ignored(what)
             return
         raised, asked = None, (what.exc_value.status - 128, time.monotonic())
@@ -115,7 +124,8 @@ def _catch_signals() -> None:
         # What is ignored from the start stays so: nohup, or a shell's job in the background.
         if signal.getsignal(signum) is not signal.SIG_IGN:
             signal.signal(signum, stop)
-    signal.signal(signal.SIGALRM, stop)
+    if _TIMER is not None:
+        signal.signal(_TIMER, stop)
 
 
 def _imports(frame: FrameType | None) -> bool:
@@ -131,7 +141,8 @@ def _imports(frame: FrameType | None) -> bool:
 
 
 def _ignore_signals() -> None:
-    for signum in (*_SIGNALS, signal.SIGALRM):  # what is left to do takes no time
+    for signum in (*_SIGNALS, *([_TIMER] if _TIMER is not None else [])):
+        # What is left to do takes no time.
         signal.signal(signum, signal.SIG_IGN)
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.film import SpeedOption, film, film_name
+from fuzzyq_bullet.cli.film import ReplaceOption, SpeedOption, film, film_name
 from fuzzyq_bullet.cli.folder import FOLDER
 from fuzzyq_bullet.cli.plugin import PluginOption
 
@@ -23,6 +23,7 @@ def replay(
     ] = None,
     speed: SpeedOption = 1.0,
     plugin: PluginOption = None,
+    replace: ReplaceOption = False,
 ) -> None:
     """Make the video NAME.mp4 from a record, without running anything again.
 
@@ -31,14 +32,14 @@ def replay(
     Raises:
         UserError: If the record cannot be read, or the video cannot be written.
     """
-    from fuzzyq_bullet.checks.plugins import load_plugins
-    from fuzzyq_bullet.errors import UserError
-    from fuzzyq_bullet.files import writable_files
+    from fuzzyq_bullet.files import refuse_inputs, writable_files
+    from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run
     from fuzzyq_bullet.trajectory import Trajectory
 
-    load_plugins(plugin or [])
     record = Trajectory.load(trajectory)
-    (video,) = writable_files(out or trajectory.parent, [film_name(trajectory.stem, speed)])
-    if video == trajectory:
-        raise UserError(f"{trajectory}: its own video would replace it; call it NAME.npz")
+    folder = out or trajectory.parent
+    (video,) = writable_files(folder, [film_name(trajectory.stem, speed)])
+    refuse_inputs([video], [trajectory, *plugin_inputs(plugin or [])])
+    if not replace and not folder.samefile(trajectory.parent):
+        refuse_other_run(folder / f"{trajectory.stem}.npz", [video], record.scenario)
     typer.echo(film(record, video, speed))

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from fuzzyq_bullet.cli.folder import FILE
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.cli.sharing import Jobs
 
 
@@ -28,6 +29,7 @@ def report(
         bool, typer.Option("--figures/--no-figures", help="The paper's Figs. 4 and 9 to 12.")
     ] = True,
     jobs: Jobs = None,
+    plugin: PluginOption = None,
 ) -> None:
     """Make one page of what fuzzyq bench success, steps, learning and escape wrote below DIR.
 
@@ -39,11 +41,14 @@ def report(
     """
     from fuzzyq_bullet.cli.console import progress_bar, say
     from fuzzyq_bullet.experiments.report.evaluation import evaluation_of, wanted_films
-    from fuzzyq_bullet.files import writable_files, write_text
+    from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
+    from fuzzyq_bullet.outputs import plugin_inputs
 
     evaluation = evaluation_of(folder)
     target = folder / "report.html" if out is None else out
     (target,) = writable_files(target.parent, [target.name])
+    sources = [path for sweep in evaluation.sweeps for path in sweep.files]
+    refuse_inputs([target], [*sources, *plugin_inputs(plugin or [])])
 
     from fuzzyq_bullet.experiments.figures import FIGURES
     from fuzzyq_bullet.experiments.report.films import Film, Wanted
@@ -55,7 +60,7 @@ def report(
     # Films first: they take longest, and the end should not wait for one.
     things: list[Wanted | int] = [*wanted.values(), *drawn]
     with progress_bar("filming", len(things)) as (progress, bar):
-        made = make(things, jobs, lambda: progress.advance(bar))
+        made = make(things, jobs, plugin or [], lambda: progress.advance(bar))
     named = dict(zip([*wanted, *drawn], made, strict=True))
     films = {place: one for place in wanted if isinstance(one := named[place], Film)}
     pictures = {number: one for number in drawn if isinstance(one := named[number], bytes)}

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from fuzzyq_bullet.cli.console import progress_bar, say
-from fuzzyq_bullet.cli.film import SpeedOption, film, film_name, films_of
+from fuzzyq_bullet.cli.film import ReplaceOption, SpeedOption, film, film_name, films_of
 from fuzzyq_bullet.cli.folder import FOLDER
 from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.errors import UserError
@@ -37,30 +39,49 @@ def run(
     out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
     video: Annotated[bool, typer.Option("--video/--no-video", help="Make the video.")] = True,
     speed: SpeedOption = 1.0,
+    replace: ReplaceOption = False,
     json: Annotated[bool, typer.Option("--json", help="Result as JSON on stdout, alone.")] = False,
 ) -> None:
     """Drive a scenario; write NAME.mp4, NAME.npz (the record) and NAME.json (the result).
 
-    At a speed other than 1 the video is called by that: NAME-4x.mp4. Exit code 1 when the run
-    misses what the scenario expects.
+    What differs from the scenario's own settings becomes part of NAME: mixed-fuzzy-seed7. At a
+    speed other than 1 the video is called by that: NAME-4x.mp4. Exit code 1 when the run misses
+    what the scenario expects.
     """
     # What takes long to load waits until the scenario is known to be right.
-    from fuzzyq_bullet.checks.plugins import load_plugins
-    from fuzzyq_bullet.files import writable_files, write_text
+    from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
+    from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run, run_name, scenario_inputs
     from fuzzyq_bullet.scenario import load_scenario, realise
 
-    load_plugins(plugin or [])
     given = load_scenario(scenario, policies=planner is None)  # another planner has its own
     asked = _with_options(given, planner=planner, seed=seed, drive=drive)
     task = realise(asked)
-    names = [film_name(task.name, speed), f"{task.name}.npz", f"{task.name}.json"]
-    mp4, npz, result_file = written = writable_files(out, names)
+    name = run_name(given, asked)
+    mp4, npz, result_file = written = writable_files(
+        out, [film_name(name, speed), f"{name}.npz", f"{name}.json"]
+    )
+    refuse_inputs(written, [*scenario_inputs(scenario, asked), *plugin_inputs(plugin or [])])
+    if not video:
+        written.remove(mp4)
+
+    def refuse_others() -> None:
+        if not replace:
+            refuse_other_run(npz, [path for path in written if path != npz], task)
+
+    refuse_others()
 
     from fuzzyq_bullet import episode
+    from fuzzyq_bullet.early_warnings import early_warnings
     from fuzzyq_bullet.metrics import result_of
     from fuzzyq_bullet.verdict import missed
 
-    with progress_bar("driving", task.limits.time) as (progress, bar):
+    for warning in early_warnings(scenario, asked, task):
+        say(f"warning: {warning}")
+    # A planner may print; stdout is for the result.
+    with (
+        redirect_stdout(sys.stderr),
+        progress_bar("driving", task.limits.time) as (progress, bar),
+    ):
         trajectory = episode.run(
             task,
             progress=lambda time, to_goal: progress.update(
@@ -68,20 +89,19 @@ def run(
             ),
         )
     result = result_of(trajectory)
+    refuse_others()  # again: another command may have written meanwhile
     # The record first: whatever happens to the video, it can be made again from that.
     trajectory.save(npz)
     write_text(result_file, result.model_dump_json(indent=2) + "\n")
     if video:
         film(trajectory, mp4, speed)
-    else:
-        written.remove(mp4)
     if json:
         typer.echo(result.model_dump_json(indent=2))
     misses = missed(task.expect, result)
     _summarise(result, misses, trajectory, listed=len(asked.obstacles))
     for path in written:
         say(f"  {path}")
-    for path in films_of(out, task.name):
+    for path in films_of(out, name):
         if path not in written:
             say(f"{path} is of an earlier run")
     if misses:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.errors import UserError
 
 
@@ -15,8 +16,12 @@ def validate(
         list[str],
         typer.Argument(metavar="FILE...", help="Scenario files, or names of bundled ones."),
     ],
+    *,
+    plugin: PluginOption = None,
 ) -> None:
     """Check scenario files; name every mistake with its file, line and key.
+
+    What is allowed and yet hardly meant is told as a warning, which changes no exit code.
 
     Raises:
         UserError: If any of them is wrong; one line a mistake.
@@ -25,22 +30,26 @@ def validate(
 
     problems: list[str] = []
     for file in files:
-        found = _problems_of(file)
+        found, warnings = _look_at(file)
         if not found:
             say(f"{file}: ok")
+        for warning in warnings:
+            say(f"warning: {warning}")
         problems += found
     if problems:
         raise UserError(*problems)
 
 
-def _problems_of(file: str) -> tuple[str, ...]:
+def _look_at(file: str) -> tuple[tuple[str, ...], list[str]]:
+    """Return what is wrong with a file, and what is allowed and yet hardly meant."""
+    from fuzzyq_bullet.early_warnings import early_warnings
     from fuzzyq_bullet.scenario import load_scenario, realise
 
     try:
-        realise(load_scenario(file))
+        scenario = load_scenario(file)
+        return (), early_warnings(file, scenario, realise(scenario))
     except UserError as error:
-        return error.problems
-    return ()
+        return error.problems, []
 
 
 def schema() -> None:

@@ -9,7 +9,7 @@ from fuzzyq_bullet.cli.console import progress_bar
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from fuzzyq_bullet.experiments.sweep.run import Progress, State
     from fuzzyq_bullet.experiments.sweep.workers import Pool
@@ -58,16 +58,14 @@ def drives_of(text: str) -> tuple[Drive, ...]:
         UserError: If there is no such drive.
     """
     from fuzzyq_bullet.scenario import Drive
-    from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+    from fuzzyq_bullet.wording import not_one_of
 
     known: tuple[Drive, ...] = get_args(Drive)
     if text == "both":
         return known
     chosen = tuple(drive for drive in known if drive == text)
     if not chosen:
-        allowed = [*known, "both"]
-        hint = did_you_mean(text, allowed)
-        raise UserError(f"--drive: no drive {shorten(text)}; {hint}allowed: {', '.join(allowed)}")
+        raise UserError(f"--drive: {not_one_of('drive', text, [*known, 'both'])}")
     return chosen
 
 
@@ -106,15 +104,13 @@ def planners_of(text: str) -> dict[str, PlannerSettings]:
         UserError: If there is no such planner.
     """
     from fuzzyq_bullet.planning import planner_names, settings_for
-    from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+    from fuzzyq_bullet.planning.registry import no_planner
 
     chosen = {}
     for part in text.split(","):
         name = part.strip()
         if name not in planner_names():
-            hint = did_you_mean(name, planner_names())
-            allowed = ", ".join(planner_names())
-            raise UserError(f"--planners: no planner {shorten(name)}; {hint}allowed: {allowed}")
+            raise UserError(f"--planners: {no_planner(name)}")
         chosen[name] = settings_for(name).model_validate({"name": name})
     return chosen
 
@@ -132,12 +128,11 @@ def planner_of(name: str, weights: str | None) -> PlannerSettings:
     from pydantic import ValidationError
 
     from fuzzyq_bullet.planning import planner_names, settings_for
-    from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+    from fuzzyq_bullet.planning.registry import no_planner
+    from fuzzyq_bullet.wording import shorten
 
     if name not in planner_names():
-        hint = did_you_mean(name, planner_names())
-        allowed = ", ".join(planner_names())
-        raise UserError(f"--planner: no planner {shorten(name)}; {hint}allowed: {allowed}")
+        raise UserError(f"--planner: {no_planner(name)}")
     model = settings_for(name)
     takes = "weights" in model.model_fields
     if weights is None:
@@ -155,30 +150,38 @@ def planner_of(name: str, weights: str | None) -> PlannerSettings:
 
 
 @contextmanager
-def pool_of(backend: str, scheduler: str | None, jobs: int | None) -> Iterator[Pool]:
+def pool_of(
+    backend: str, scheduler: str | None, jobs: int | None, plugins: Sequence[str]
+) -> Iterator[Pool]:
     """Yield who does the work of a sweep.
 
     Args:
         backend: ``loky``, processes of this machine, or ``dask``.
         scheduler: Address of the Dask scheduler.
         jobs: Episodes at a time; None for one a core.
+        plugins: Modules that each worker imports first.
 
     Raises:
         UserError: If there is no such backend, or its scheduler cannot be used.
     """
-    from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
+    from fuzzyq_bullet.wording import not_one_of
 
     if backend not in BACKENDS:
-        hint = did_you_mean(backend, BACKENDS)
-        allowed = ", ".join(BACKENDS)
-        raise UserError(f"--backend: no backend {shorten(backend)}; {hint}allowed: {allowed}")
+        raise UserError(f"--backend: {not_one_of('backend', backend, BACKENDS)}")
     if (backend == "dask") != (scheduler is not None):
         raise UserError("--backend dask and --scheduler ADDRESS belong together")
     if scheduler is None:
         from fuzzyq_bullet.experiments.sweep.workers import Pool
 
-        yield Pool(jobs)
+        yield Pool(jobs, plugins=tuple(plugins))
         return
+
+    files = [name for name in plugins if name.endswith(".py")]
+    if files:
+        raise UserError(
+            f"--plugin: {files[0]} is a file of this machine; with --backend dask install it as a "
+            "module on the workers, and give its name"
+        )
 
     from fuzzyq_bullet.experiments.sweep.cluster import cluster
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fuzzyq_bullet.cli.console import progress_bar, say
+from fuzzyq_bullet.cli.plugin import PluginOption
 from fuzzyq_bullet.cli.process import Stopped
 from fuzzyq_bullet.errors import UserError
 
@@ -45,8 +46,9 @@ def train(
         bool, typer.Option("--resume", help="Go on with a training that was begun.")
     ] = False,
     anew: Annotated[
-        bool, typer.Option("--anew", help="Begin again, whatever was begun before.")
+        bool, typer.Option("--anew", help="Begin again, whatever was begun or made there before.")
     ] = False,
+    plugin: PluginOption = None,
     json: Annotated[bool, typer.Option("--json", help="Summary as JSON on stdout, alone.")] = False,
 ) -> None:
     """Train a planner; write PLANNER.json (the policy) and PLANNER.png (the learning curve).
@@ -62,14 +64,21 @@ def train(
     # What takes long to load waits until the options are known to be right.
     if resume and anew:
         raise UserError("--resume, --anew: give one of them; the first goes on, the other does not")
+    from fuzzyq_bullet.files import alone_at, refuse_inputs
+    from fuzzyq_bullet.outputs import plugin_inputs
+
     order = _order(planner, episodes, drive, seed, scenario)
     files = _Files.of(order.planner, out)
     tasks = _tasks(order)
     files.check()
-    progress = _Progress(_begun(files.checkpoint, resume=resume, anew=anew))
+    from fuzzyq_bullet.scenario import find_scenario
 
+    read = [] if scenario is None else [find_scenario(scenario)]
+    refuse_inputs(files.all, [*read, *plugin_inputs(plugin or [])])
     try:
-        curve = _learn(order, tasks, files, progress, resume=resume)
+        with alone_at(files.checkpoint):
+            progress = _Progress(_begun(order, tasks, files, resume=resume, anew=anew))
+            curve = _learn(order, tasks, files, progress, resume=resume)
     except Stopped:
         where = [] if out is None else ["--out", out]
         again = f"{order.command} {shlex.join([*where, '--resume'])}"
@@ -100,12 +109,16 @@ class _Files:
             policy.with_name(f"{policy.stem}.checkpoint.npz"),
         )
 
+    @property
+    def all(self) -> tuple[Path, ...]:
+        """All of them."""
+        return self.policy, self.picture, self.checkpoint
+
     def check(self) -> None:
         """Make sure that all can be written, before anything is learned."""
         from fuzzyq_bullet.files import writable_files
 
-        names = [path.name for path in (self.policy, self.picture, self.checkpoint)]
-        writable_files(self.policy.parent, names)
+        writable_files(self.policy.parent, [path.name for path in self.all])
 
 
 @dataclass
@@ -171,10 +184,10 @@ def _order(planner: str, episodes: int, drive: str, seed: int, scenario: str | N
     from fuzzyq_bullet.learning.training import MAX_EPISODES
     from fuzzyq_bullet.planning import planner_names
     from fuzzyq_bullet.scenario.models import Drive
-    from fuzzyq_bullet.scenario.problems import did_you_mean, shorten
     from fuzzyq_bullet.training.order import Order
     from fuzzyq_bullet.training.recipes import RECIPES
     from fuzzyq_bullet.training.tasks import MOST_SEED
+    from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
 
     if planner not in RECIPES:
         known = planner in planner_names()
@@ -191,10 +204,7 @@ def _order(planner: str, episodes: int, drive: str, seed: int, scenario: str | N
             order = Order(planner, episodes, known_drive, seed, scenario)
             break
     else:
-        hint = did_you_mean(drive, drives)
-        raise UserError(
-            f"--drive: no drive {shorten(drive)}; {hint}allowed: {', '.join(sorted(drives))}"
-        )
+        raise UserError(f"--drive: {not_one_of('drive', drive, sorted(drives))}")
     if len(order.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
         raise UserError(
             f"--scenario: its path is too long for the policy to hold: {shorten(scenario)}"
@@ -223,31 +233,52 @@ def _tasks(order: Order) -> Tasks:
     return recipe.tasks(order.drive, order.seed, asked)
 
 
-def _begun(checkpoint: Path, *, resume: bool, anew: bool) -> int:
+def _begun(order: Order, tasks: Tasks, files: _Files, *, resume: bool, anew: bool) -> int:
     """Return how many episodes of the training that is to go on are done already.
 
     Raises:
-        UserError: If a training was begun, and it was not said what is to become of it.
+        UserError: If another training was begun or finished there, or the same was begun, and it
+            was not said what is to become of it.
     """
     from fuzzyq_bullet.learning.checkpoint import Checkpoint
 
     if anew:
         return 0
+    checkpoint = files.checkpoint
     try:
         saved = Checkpoint.find(checkpoint)
     except UserError as error:
         raise UserError(f"{error.problems[0]}; --anew begins again") from error
-    if saved is None:
-        return 0
-    done, total = len(saved.curve), saved.plan.get("episodes", 0)
-    if resume:
+    done, total = (0, 0) if saved is None else (len(saved.curve), saved.plan.get("episodes", 0))
+    if resume and saved is not None:
         return done
     if 0 < done != total:
         raise UserError(
             f"{checkpoint}: a training was begun, {done} of {total} episodes are done; "
             "--resume goes on, --anew begins again, another --out leaves it alone"
         )
+    finished = [path for path in files.all if path.exists()]
+    if (
+        finished
+        and not (done == 0 and finished == [checkpoint])
+        and not _is_same(order, tasks, files)
+    ):
+        raise UserError(
+            f"{finished[0]}: is there already, and not of this training; --anew replaces it, "
+            "another --out leaves it alone"
+        )
     return 0
+
+
+def _is_same(order: Order, tasks: Tasks, files: _Files) -> bool:
+    """Return whether the policy that is there was made by the very same training."""
+    from fuzzyq_bullet.learning.policy import load_policy
+
+    try:
+        policy = load_policy(files.policy)
+    except UserError:
+        return False
+    return (policy.command, policy.scenario) == (order.command, tasks.digest())
 
 
 def _kept(checkpoint: Path) -> int:

@@ -30,12 +30,14 @@ class Driver(Protocol):
         steps: Steps of the simulation so far.
         collision: The first contact, after which the run is over.
         arrived: Whether the robot is where it should be.
+        slowness: How many times as long as usual the robot is to be waited for, at least 1.
     """
 
     ticks: list[Tick]
     steps: int
     collision: Collision | None
     arrived: bool
+    slowness: float
 
     def observe(self) -> Observation:
         """Return what the planner may know now."""

@@ -10,9 +10,12 @@ from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Robot, Scenario
 from fuzzyq_bullet.trajectory import Collision
 
+STEP_TIME = longest_step_time(Robot())
+"""How long every step lasts (s), whatever the robot's limits: a point that jumps has no speed, so
+no limit of it may decide how a run ends."""
 ROUNDING = 1e-9
 """More than a clearance may be told too long by rounding (m)."""
 
@@ -28,12 +31,12 @@ class KinematicDriver:
         self._world = world
         self._field = field = world.field
         self._goal = scenario.goal
-        self._step_time = longest_step_time(scenario.robot)
         near = Nearby(field)
         self._apart = Apart(lambda x, y: near.clearance(x, y) - ROBOT_RADIUS)
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
+        self.slowness = 1.0
         self.ticks: list[Tick] = []
         self._record(*scenario.start.position, scenario.start_heading(), 0.0)
 
@@ -41,6 +44,7 @@ class KinematicDriver:
         """Return the observation of a robot without inertia."""
         now = self.ticks[-1]
         position = (now.x, now.y)
+        sensor = CastOnce(self._world, position, self._apart.by(*position, self._world.beside))
         return Observation(
             time=now.time,
             position=position,
@@ -51,8 +55,8 @@ class KinematicDriver:
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
             radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=CastOnce(self._world, position, self._apart.by(*position, self._world.beside)),
-            look=lambda headings: self._world.look(position, headings),
+            sense=sensor,
+            look=sensor.look,
         )
 
     def advance(self, decision: Decision) -> None:
@@ -70,7 +74,7 @@ class KinematicDriver:
         x = now.x + moved * math.cos(decision.heading)
         y = now.y + moved * math.sin(decision.heading)
         self.steps += 1
-        self._record(x, y, decision.heading, moved / self._step_time)
+        self._record(x, y, decision.heading, moved / STEP_TIME)
         if hit:
             index, touched = self._field.touching((x, y))
             self.collision = Collision(
@@ -81,7 +85,7 @@ class KinematicDriver:
     def _record(self, x: float, y: float, heading: float, speed: float) -> None:
         self.ticks.append(
             Tick(
-                time=self.steps * self._step_time,
+                time=self.steps * STEP_TIME,
                 x=x,
                 y=y,
                 heading=heading,

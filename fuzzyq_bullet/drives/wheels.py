@@ -51,6 +51,7 @@ class WheelsDriver:
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
+        self.slowness = self._motion.slowness
         self.ticks: list[Tick] = []
         world.robot.place(*scenario.start.position, scenario.start_heading())
         self._record()
@@ -59,6 +60,7 @@ class WheelsDriver:
         """Return the observation at the latest tick."""
         now = self.ticks[-1]
         position = (now.x, now.y)
+        sensor = CastOnce(self._world, position, self._foresight.apart(now, TICK_STEPS))
         return Observation(
             time=now.time,
             position=position,
@@ -69,8 +71,8 @@ class WheelsDriver:
             goal_radius=self._goal.radius,
             range=SENSOR_RANGE,
             radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=CastOnce(self._world, position, self._foresight.apart(now, TICK_STEPS)),
-            look=lambda headings: self._world.look(position, headings),
+            sense=sensor,
+            look=sensor.look,
             motion=self._motion,
         )
 

@@ -1,28 +1,21 @@
-"""The Gymnasium door: two learning problems, registered when this is imported.
+"""The Gymnasium door: two learning problems.
 
     import gymnasium
-    import fuzzyq_bullet.gym
+    import fuzzyq_bullet
 
     env = gymnasium.make("fuzzyq_bullet/Navigation-v0")
 
-``gymnasium.make("fuzzyq_bullet.gym:fuzzyq_bullet/Navigation-v0")`` needs no import of its own.
 PyBullet is loaded only when an environment is made.
 """
 
 import gymnasium
 
-ENVIRONMENTS = {
-    "fuzzyq_bullet/Navigation-v0": "fuzzyq_bullet.gym.navigation:NavigationEnv",
-    "fuzzyq_bullet/Weights-v0": "fuzzyq_bullet.gym.weights:WeightsEnv",
-}
-"""The class of each environment by its id."""
+from fuzzyq_bullet.gym_ids import ENVIRONMENTS, register_in
 
 
 def register() -> None:
     """Make the environments known to Gymnasium; a second call does nothing."""
-    for name, entry_point in ENVIRONMENTS.items():
-        if name not in gymnasium.registry:
-            gymnasium.register(id=name, entry_point=entry_point)
+    register_in(gymnasium)
 
 
 register()

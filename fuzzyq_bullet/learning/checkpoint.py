@@ -11,7 +11,8 @@ import io
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +21,6 @@ from fuzzyq_bullet.archive import read_arrays
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.learning.tabular import Floats
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 Plain: TypeAlias = "str | int | float | bool"
 Curve: TypeAlias = NDArray[np.void]
@@ -48,7 +46,7 @@ class Checkpoint:
     table: Floats
     curve: Curve
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path | str) -> None:
         """Write it whole or not at all, over the one before.
 
         Raises:
@@ -57,7 +55,7 @@ class Checkpoint:
         head = json.dumps({"format": FORMAT, "plan": dict(self.plan)}).encode()
         content = io.BytesIO()
         np.savez(content, head=np.frombuffer(head, np.uint8), table=self.table, curve=self.curve)
-        with written_beside(path) as part:
+        with written_beside(Path(path)) as part:
             part.write_bytes(content.getbuffer())
 
     @classmethod
@@ -81,8 +79,6 @@ class Checkpoint:
         Raises:
             UserError: If it cannot be read, is damaged or none at all.
         """
-        if path.exists() and not path.is_file():
-            raise UserError(f"{path}: is not a file; give the checkpoint of a training")
         arrays = read_arrays(path)
         try:
             head = json.loads(arrays["head"].tobytes().decode())
@@ -95,7 +91,7 @@ class Checkpoint:
             raise UserError(f"{path}: a checkpoint of format {shown}; this version reads {FORMAT}")
         if not isinstance(plan, dict) or table.dtype != np.float64 or curve.dtype != ROW:
             raise UserError(f"{path}: not the checkpoint of a training, or damaged")
-        if table.ndim != 2 or curve.ndim != 1 or not is_sound(table):
+        if table.ndim != 2 or curve.ndim != 1 or not is_sound(table) or not _is_told(curve):
             raise UserError(f"{path}: damaged: its table or curve cannot be one of a training")
         return cls(plan, table, curve)
 
@@ -129,6 +125,12 @@ class Checkpoint:
 def is_sound(table: NDArray[Any]) -> bool:
     """Return whether all values are finite and none is absurd."""
     return bool((np.abs(table) <= LARGEST).all())
+
+
+def _is_told(curve: Curve) -> bool:
+    """Return whether a training can have left this curve: its sums, steps and outcomes."""
+    words = all(one.isascii() and one.decode().isprintable() for one in curve["outcome"])
+    return words and is_sound(curve["total"]) and bool((curve["steps"] >= 0).all())
 
 
 def _shown(value: Any) -> str:

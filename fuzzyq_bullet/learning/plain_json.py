@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import read_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,16 +28,7 @@ def read_object(path: Path, *, what: str, most: int) -> dict[str, Any]:
     Raises:
         UserError: If it cannot be read, or is anything else; one line.
     """
-    try:
-        if path.exists() and not path.is_file():
-            raise UserError(f"{path}: is not a file; give {what} (.json)")
-        with path.open("rb") as file:
-            content = file.read(most + 1)
-    except (OSError, ValueError) as error:  # ValueError: a null character in its name
-        reason = getattr(error, "strerror", None) or error
-        raise UserError(f"{path}: cannot be read: {reason}") from error
-    if len(content) > most:
-        raise UserError(f"{path}: too large; {what} has at most {most} bytes")
+    content = read_bytes(path, what=what, most=most)
     if not content.strip():
         raise UserError(f"{path}: is empty; it should hold {what}")
     try:

@@ -7,6 +7,7 @@ very same, so the same training gives the same bytes.
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -26,8 +27,6 @@ from fuzzyq_bullet.learning.policy_fields import (
 )
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from fuzzyq_bullet.learning.expected import Expected
     from fuzzyq_bullet.learning.tabular import Floats
 
@@ -98,7 +97,7 @@ class Policy(BaseModel):
             lines.append(f" {_json(key)}: {text}")
         return "{\n" + ",\n".join(lines) + "\n}\n"
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path | str) -> None:
         """Write it whole or not at all.
 
         Raises:
@@ -107,10 +106,10 @@ class Policy(BaseModel):
         text = self.dumps()
         if len(text.encode()) > MAX_BYTES:
             raise UserError(f"{path}: too large; a policy has at most {MAX_BYTES} bytes")
-        write_text(path, text)
+        write_text(Path(path), text)
 
 
-def load_policy(path: Path, expect: Expected | None = None) -> Policy:
+def load_policy(path: Path | str, expect: Expected | None = None) -> Policy:
     """Read a policy from a file.
 
     Args:
@@ -121,7 +120,7 @@ def load_policy(path: Path, expect: Expected | None = None) -> Policy:
         UserError: If it cannot be read, is wrong, or does not fit; one line that says what is
             right.
     """
-    data = read_object(path, what="a policy", most=MAX_BYTES)
+    data = read_object(Path(path), what="a policy", most=MAX_BYTES)
     form = data.get("format")
     if form != FORMAT or isinstance(form, bool):
         raise UserError(

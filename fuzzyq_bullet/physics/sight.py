@@ -45,6 +45,8 @@ class Sight:
         engine: An engine to build in, emptied first; by default a new one that is owned.
 
     Attributes:
+        obstacles: What it was built of.
+        arena: Likewise.
         field: The exact geometry of all obstacles and walls.
         beside: What is no nearer to the robot's body than this (m) stands in no line's margin: the
             faces that rays meet reach a little beyond what is really there.
@@ -57,6 +59,7 @@ class Sight:
         *,
         engine: Engine | None = None,
     ) -> None:
+        self.obstacles, self.arena = tuple(obstacles), arena
         self.field = Field.of(obstacles, arena)
         self._owns_engine = engine is None
         self.engine = engine or Engine()

@@ -26,7 +26,6 @@ class World(Sight):
     """
 
     def _build(self, obstacles: Sequence[Cylinder | Box], arena: Arena) -> None:
-        self._arena = arena
         # The order of loading is part of the trajectory: ground, obstacles, walls, faces, robot.
         ground = self._build_ground()
         self._obstacles = self.engine.load_text(obstacles_urdf(obstacles)) if obstacles else None
@@ -87,7 +86,7 @@ class World(Sight):
         search = self._last_clearance + moved + 0.01
         if not search <= CLEARANCE_RANGE:  # also when nothing was asked before
             search = CLEARANCE_RANGE
-        width, depth = self._arena.size
+        width, depth = self.arena.size
         near_wall = min(x, width - x, y, depth - y) - ROBOT_RADIUS <= search
         nearest = math.inf
         for body in (self._obstacles, self.walls if near_wall else None):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, Protocol, TypeAlias, get_args
@@ -25,6 +26,12 @@ RangeSensor: TypeAlias = Callable[[Sequence[float]], Sequence[float]]
 """Free distances (m) along world headings (rad), one for each, in one batch."""
 ThinRays: TypeAlias = Callable[[Sequence[float]], Floats]
 """Distances (m) along world headings (rad), shape (K,), in one batch."""
+
+
+USUAL_SPEED = 0.6
+"""Greatest speed (m/s) of the robot that all patience was measured with."""
+USUAL_HALF_TURN = 2.0
+"""How long that robot may take to turn round on the spot (s)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +59,19 @@ class Motion:
     def way_to_stop(self, speed: float) -> float:
         """Return the way (m) from full braking at ``speed`` (m/s) to a stop."""
         return speed * speed / (2.0 * self.acceleration)
+
+    @property
+    def slowness(self) -> float:
+        """How many times as long as the usual robot it takes to drive or to turn; at least 1.
+
+        Whatever waits for the robot, and gives up, waits so many times as long.
+        """
+        rate, change = self.max_turn_rate, self.turn_acceleration
+        if rate * rate < math.pi * change:
+            half_turn = math.pi / rate + rate / change
+        else:  # it brakes again before it turns as fast as it could
+            half_turn = 2.0 * math.sqrt(math.pi / change)
+        return max(1.0, USUAL_SPEED / self.max_speed, half_turn / USUAL_HALF_TURN)
 
 
 class Observation(NamedTuple):
@@ -86,6 +106,11 @@ class Observation(NamedTuple):
     sense: RangeSensor
     look: ThinRays
     motion: Motion | None = None
+
+    @property
+    def slowness(self) -> float:
+        """How many times as long as usual the robot is to be waited for, at least 1."""
+        return 1.0 if self.motion is None else self.motion.slowness
 
 
 _NAN = float("nan")

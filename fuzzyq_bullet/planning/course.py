@@ -16,10 +16,8 @@ REACHED = 0.03
 NEARER = 0.05 * STEP_UNIT
 """What counts as having come nearer (m)."""
 PATIENCE = 3.0
-"""Time without coming nearer to the next point after which the way is given up (s), if the robot
-could have turned round by then; else as long as that takes, and ..."""
-START = 1.0
-"""... this much (s)."""
+"""Time without coming nearer to the next point after which the way is given up (s); longer for a
+slow robot."""
 NARROW = math.radians(4.0)
 """Where the way is not free by so much to either side it is narrow: the robot must face it ..."""
 FACING = math.radians(2.0)
@@ -102,11 +100,10 @@ class Course:
         self._closest = math.inf
 
     def _comes_nearer(self, way: float, observation: Observation) -> bool:
-        now, motion = observation.time, observation.motion
+        now = observation.time
         if way < self._closest - NEARER:
             self._closest, self._since = way, now
-        half_turn = math.pi / motion.max_turn_rate if motion is not None else 0.0
-        return now - self._since <= max(PATIENCE, START + half_turn)
+        return now - self._since <= PATIENCE * observation.slowness
 
 
 def _must_aim(observation: Observation, heading: float, way: float) -> bool:

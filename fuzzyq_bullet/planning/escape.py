@@ -23,7 +23,8 @@ ENOUGH = 1.0 * STEP_UNIT
 GAIN = 1.0 * STEP_UNIT
 """By how much nearer than ever before the line to the goal must lead to be taken again (m)."""
 PATIENCE = 2.5
-"""Time without coming nearer to the goal after which the routine part has failed (s)."""
+"""Time without coming nearer to the goal after which the routine part has failed (s); longer for a
+slow robot."""
 ARRIVED = 0.1
 """How near to an exit the robot has reached it (m); nearer than ``places.NEAR``, so that looking
 about from there is the end of that exit."""
@@ -71,7 +72,7 @@ class Escape:
         blocked = middle < enough
         stalled = (
             not self._straight
-            and observation.time - self._since > PATIENCE
+            and observation.time - self._since > PATIENCE * observation.slowness
             and middle < min(observation.range, to_goal)
         )
         if (blocked or stalled) and not self._follows:

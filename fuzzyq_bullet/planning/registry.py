@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
+from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.base import Planner
 from fuzzyq_bullet.planning.settings import PlannerSettings
+from fuzzyq_bullet.wording import not_one_of, shorten
 
 Factory: TypeAlias = Callable[[Any, np.random.Generator], Planner]
 _S = TypeVar("_S", bound=PlannerSettings)
@@ -23,6 +26,8 @@ class _Entry:
     settings: type[PlannerSettings]
     factory: Factory
 
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 
 _entries: dict[str, _Entry] = {}
 
@@ -39,8 +44,14 @@ def register_planner(
         factory: Builds one planner for one episode from its settings and a random generator.
 
     Raises:
-        ValueError: If the name is taken, or the settings could not be built with it.
+        ValueError: If the name is taken, or could not be part of a file's name, or the settings
+            could not be built with it.
     """
+    if not _NAME.fullmatch(name):
+        raise ValueError(
+            f"a planner cannot be named {shorten(name)}; allowed: letters, digits, '.', '-' and "
+            "'_', at most 100, beginning with a letter or digit"
+        )
     if name in _entries:
         raise ValueError(f"a planner named {name!r} is registered already")
     settings.model_validate({"name": name})
@@ -61,6 +72,17 @@ def settings_for(name: str) -> type[PlannerSettings]:
     return _entries[name].settings
 
 
+def no_planner(name: Any) -> str:
+    """Say that no planner has this name, which do exist, and how others come to be known."""
+    return f"{not_one_of('planner', name, planner_names())}; --plugin FILE adds one of your own"
+
+
 def make_planner(settings: PlannerSettings, rng: np.random.Generator) -> Planner:
-    """Build the planner that the settings name, for one episode."""
+    """Build the planner that the settings name, for one episode.
+
+    Raises:
+        UserError: If no such planner is registered here, as with a record from elsewhere.
+    """
+    if settings.name not in _entries:
+        raise UserError(no_planner(settings.name))
     return _entries[settings.name].factory(settings, rng)

@@ -10,7 +10,7 @@ import yaml
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.files import written_beside
+from fuzzyq_bullet.files import read_bytes, written_beside
 from fuzzyq_bullet.resources import data_folder
 from fuzzyq_bullet.scenario.checks import find_conflicts
 from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, Scenario
@@ -20,12 +20,11 @@ from fuzzyq_bullet.scenario.problems import (
     MAX_WORDED,
     Loc,
     Problem,
-    did_you_mean,
     key_path,
     problems_of,
-    shorten,
 )
 from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
+from fuzzyq_bullet.wording import did_you_mean, shorten
 
 if TYPE_CHECKING:
     import os
@@ -160,14 +159,21 @@ def save_scenario(scenario: Scenario, path: Source) -> None:
         part.write_text(dump_scenario(scenario), encoding="utf-8")
 
 
+def problem_lines(source: Source, problems: list[Problem]) -> list[str]:
+    """Return a line for each problem of a scenario file that can be read: ``FILE:LINE: KEY: ...``.
+
+    Args:
+        source: A path, or the name of a bundled scenario.
+        problems: What is wrong, or doubtful.
+    """
+    if not problems:
+        return []
+    path = find_scenario(source)
+    return _lines(problems, 0, read_tree(_read(path), str(path)), str(path))
+
+
 def _read(path: Path) -> str:
-    try:
-        with path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror or error}") from error
-    if len(content) > MAX_BYTES:
-        raise UserError(f"{path}: too large; a scenario has at most {MAX_BYTES} bytes")
+    content = read_bytes(path, what="a scenario", most=MAX_BYTES)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -196,7 +202,7 @@ def _locate(problem: Problem, tree: Node) -> tuple[int, Loc]:
     """Return the line of a problem and its path in the file.
 
     A key that is absent is shown behind the mapping that should hold it, on that one's line.
-    Parts that pydantic adds and the file does not have are passed over.
+    Parts that pydantic adds and the file does not have are passed over, unless it has none of them.
     """
     node, line, shown = tree, tree.line, ()  # type: Node, int, Loc
     for i, part in enumerate(problem.loc):
@@ -206,7 +212,7 @@ def _locate(problem: Problem, tree: Node) -> tuple[int, Loc]:
             shown += (part,)
         elif problem.missing and i == len(problem.loc) - 1:
             shown += (part,)
-    return line, shown
+    return line, shown or problem.loc
 
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
@@ -216,7 +222,7 @@ _DUMPER: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 def _flow(value: Any) -> str:
     """Return plain data as one line of YAML that YAML 1.1 readers understand alike."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{key}: {_flow(item)}" for key, item in value.items()) + "}"
+        return "{" + ", ".join(f"{_flow(key)}: {_flow(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(_flow(item) for item in value) + "]"
     if isinstance(value, bool):

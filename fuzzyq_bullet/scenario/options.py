@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any, get_args
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.planning.registry import planner_names, settings_for
+from fuzzyq_bullet.planning.registry import no_planner, planner_names, settings_for
 from fuzzyq_bullet.scenario.models import Drive, Scenario
-from fuzzyq_bullet.scenario.problems import did_you_mean, key_path, shorten
+from fuzzyq_bullet.scenario.problems import key_path
+from fuzzyq_bullet.wording import not_one_of, shorten
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from fuzzyq_bullet.planning.settings import PlannerSettings
 
 MAX_SEED = 2**63 - 1
@@ -39,16 +38,13 @@ def with_options(
         UserError: If one of them is not allowed, or the planner does not accept what the scenario
             sets.
     """
+    check_options(planner=planner, seed=seed, drive=drive)
     update: dict[str, Any] = {}
     if planner is not None and planner != scenario.planner.name:
-        _refuse_unless_one_of("planner", planner, planner_names())
         update["planner"] = _settings_of(planner, scenario.planner)
     if seed is not None:
-        if not 0 <= seed <= MAX_SEED:
-            raise UserError(f"seed: must be from 0 to {MAX_SEED}, got {seed}")
         update["seed"] = seed
     if drive is not None:
-        _refuse_unless_one_of("drive", drive, get_args(Drive))
         update["drive"] = drive
     return scenario.model_copy(update=update) if update else scenario
 
@@ -69,7 +65,17 @@ def _settings_of(planner: str, before: PlannerSettings) -> PlannerSettings:
         raise UserError(*problems) from error
 
 
-def _refuse_unless_one_of(what: str, value: str, allowed: Sequence[str]) -> None:
-    if value not in allowed:
-        hint = did_you_mean(value, allowed)
-        raise UserError(f"{what}: no {what} {shorten(value)}; {hint}allowed: {', '.join(allowed)}")
+def check_options(
+    *, planner: str | None = None, seed: int | None = None, drive: str | None = None
+) -> None:
+    """Make sure that options are allowed, whatever the scenario.
+
+    Raises:
+        UserError: If one is not; names the option.
+    """
+    if planner is not None and planner not in planner_names():
+        raise UserError(f"planner: {no_planner(planner)}")
+    if seed is not None and not 0 <= seed <= MAX_SEED:
+        raise UserError(f"seed: must be from 0 to {MAX_SEED}, got {seed}")
+    if drive is not None and drive not in get_args(Drive):
+        raise UserError(f"drive: {not_one_of('drive', drive, get_args(Drive))}")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
-import math
 import re
 import typing
 from dataclasses import dataclass
@@ -11,8 +9,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from pydantic import BaseModel, ValidationError
 
-from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
+from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner_names, settings_for
 from fuzzyq_bullet.scenario.models import Obstacle, Scenario
+from fuzzyq_bullet.wording import did_you_mean, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -50,33 +49,6 @@ def key_path(loc: Iterable[str | int]) -> str:
             shown = part if part.isidentifier() and len(part) <= 60 else shorten(part)
             path += f".{shown}" if path else shown
     return path
-
-
-def shorten(value: Any) -> str:
-    """Return a value as it would be written in the file, at most about 60 characters long."""
-    match value:
-        case None:
-            return "nothing"
-        case bool():
-            return "true" if value else "false"
-        case float() if not math.isfinite(value):
-            return "nan" if math.isnan(value) else "inf" if value > 0 else "-inf"
-        case dict():
-            return "a mapping"
-        case list() | tuple():
-            if len(value) > 6 or any(isinstance(v, dict | list | tuple) for v in value):
-                return f"a list of {len(value)}"
-            return "[" + ", ".join(shorten(v) for v in value) + "]"
-        case BaseModel():
-            return f"a {type(value).__name__}"
-    text = repr(value[:80]) if isinstance(value, str) else repr(value)
-    return text if len(text) <= 60 else f"{text[:56]} ..."
-
-
-def did_you_mean(word: Any, allowed: Iterable[str]) -> str:
-    """Return ``did you mean 'radius'? `` or nothing, for a word that is not allowed."""
-    close = difflib.get_close_matches(str(word)[:100], list(allowed), n=1)
-    return f"did you mean {close[0]!r}? " if close else ""
 
 
 def problems_of(error: ValidationError, data: Any) -> list[Problem]:
@@ -125,8 +97,7 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
         allowed = re.findall("'([^']*)'", context["expected_tags"])
         return Problem((*loc, key), _refusal(f"no {key} {shorten(tag)}", tag, allowed))
     if kind == "unknown_planner":
-        what = f"no planner {shorten(value)}"
-        return Problem(loc, _refusal(what, value, context["allowed"]))
+        return Problem(loc, no_planner(value))
     if kind == "literal_error":
         allowed = re.findall("'([^']*)'", context["expected"])
         return Problem(loc, _refusal(f"got {shorten(value)}", value, allowed))

@@ -10,6 +10,7 @@ from PIL import Image
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
+from fuzzyq_bullet.video import animation
 from fuzzyq_bullet.video.encoder import Encoder
 from fuzzyq_bullet.video.film import Film
 from fuzzyq_bullet.video.stage import Stage, closing
@@ -40,6 +41,11 @@ class VideoInfo(NamedTuple):
     seconds: float
     size: tuple[int, int]
 
+    @classmethod
+    def of(cls, frames: int, fps: int, *, small: bool) -> VideoInfo:
+        """Return what so many frames make."""
+        return cls(frames, frames / fps, (WIDTH // 2, HEIGHT // 2) if small else (WIDTH, HEIGHT))
+
 
 def record(
     trajectory: Trajectory,
@@ -51,6 +57,9 @@ def record(
 ) -> VideoInfo:
     """Write a run as an MP4: H.264, 1280 × 720, 30 frames a second.
 
+    A path that ends in ``.gif`` or ``.webp`` makes an animated picture instead: 640 × 360, 10
+    frames a second, for pages that play no films.
+
     The same run gives the same bytes. Frames are handed on one by one; whatever interrupts the
     work, no unfinished file takes the place of ``path``.
 
@@ -58,31 +67,41 @@ def record(
         trajectory: The run.
         path: The file to write.
         speed: Seconds of the run in one second of video, 0.1 to 100.
-        small: 640 × 360 instead, in an eighth of the bytes or so.
+        small: 640 × 360 instead, in an eighth of the bytes or so; an animated picture always is.
         progress: Called after each frame with the number of frames done and in total.
 
     Raises:
-        UserError: If the speed is out of range, ffmpeg is missing or fails, or the file cannot be
-            written.
+        UserError: If the speed is out of range, the path ends otherwise, ffmpeg is missing or
+            fails, or the file cannot be written.
     """
+    path = Path(path)
+    ending = path.suffix.lower()
+    if ending not in (".mp4", *animation.ENDINGS):
+        raise UserError(
+            f"{path}: a film ends in .mp4, an animated picture in {' or '.join(animation.ENDINGS)}"
+        )
     if not (isinstance(speed, (int, float)) and SLOWEST <= speed <= FASTEST):
         raise UserError(f"speed {speed!r}: the speed of a video is {SLOWEST:g} to {FASTEST:g}")
     timeline = Timeline(trajectory)
-    total = frame_count(timeline, speed)
-    film = Film()
-    path = Path(path)
-    with (
-        written_beside(path) as part,
-        Stage(trajectory, speed) as stage,
-        Encoder(part, path, small=small) as encoder,
-    ):
-        for number, moment in enumerate(moments(timeline, speed), start=1):
-            film.apply(stage.patches(moment))
-            encoder.write(film)
-            if progress is not None:
-                progress(number, total)
-    size = (WIDTH // 2, HEIGHT // 2) if small else (WIDTH, HEIGHT)
-    return VideoInfo(total, total / FPS, size)
+    if ending == ".mp4":
+        info = VideoInfo.of(frame_count(timeline, speed), FPS, small=small)
+    else:
+        info = VideoInfo.of(frame_count(timeline, speed, animation.FPS), animation.FPS, small=True)
+    told = progress or (lambda done, total: None)
+    with written_beside(path) as part, Stage(trajectory, speed) as stage:
+        if ending == ".mp4":
+            film = Film()
+            with Encoder(part, path, small=small) as encoder:
+                for number, moment in enumerate(moments(timeline, speed), start=1):
+                    film.apply(stage.patches(moment))
+                    encoder.write(film)
+                    told(number, info.frames)
+        else:
+            with animation.Animation(part, path) as picture:
+                for number, moment in enumerate(moments(timeline, speed, animation.FPS), start=1):
+                    picture.write(stage.patches(moment))
+                    told(number, info.frames)
+    return info
 
 
 def frame(trajectory: Trajectory, time: float) -> Image.Image:
@@ -104,20 +123,19 @@ def frame(trajectory: Trajectory, time: float) -> Image.Image:
     return image
 
 
-def moments(timeline: Timeline, speed: float) -> Iterator[Moment]:
+def moments(timeline: Timeline, speed: float, fps: int = FPS) -> Iterator[Moment]:
     """Yield the moment of each frame: the run, then its end for as long as the outcome is shown."""
-    running = _running(timeline, speed)
-    for k in range(running):
-        yield timeline.at(timeline.start + k * speed / FPS)
+    for k in range(_running(timeline, speed, fps)):
+        yield timeline.at(timeline.start + k * speed / fps)
     last = closing(timeline.at(timeline.end))
-    for _ in range(round(CLOSING * FPS)):
+    for _ in range(round(CLOSING * fps)):
         yield last
 
 
-def frame_count(timeline: Timeline, speed: float) -> int:
+def frame_count(timeline: Timeline, speed: float, fps: int = FPS) -> int:
     """Return the number of frames of a video."""
-    return _running(timeline, speed) + round(CLOSING * FPS)
+    return _running(timeline, speed, fps) + round(CLOSING * fps)
 
 
-def _running(timeline: Timeline, speed: float) -> int:
-    return math.floor((timeline.end - timeline.start) * FPS / speed + _ROUNDING) + 1
+def _running(timeline: Timeline, speed: float, fps: int) -> int:
+    return math.floor((timeline.end - timeline.start) * fps / speed + _ROUNDING) + 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,8 +13,10 @@ from pydantic import TypeAdapter, ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.report.settings import Settings
-from fuzzyq_bullet.experiments.sweep.journal import rows_in
+from fuzzyq_bullet.experiments.sweep.folder import MAX_SETTINGS
+from fuzzyq_bullet.experiments.sweep.journal import MAX_BYTES, rows_in
 from fuzzyq_bullet.experiments.sweep.rows import Row, from_csv
+from fuzzyq_bullet.files import read_bytes
 
 _SETTINGS: TypeAdapter[Settings] = TypeAdapter(Settings)
 _KNOWN = ("success", "steps steps", "steps grid", "learning grid", "learning comparison", "escape")
@@ -34,6 +37,12 @@ class Found:
     folder: Path
     settings: Settings
     rows: tuple[Row, ...]
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files that it was read from."""
+        names = ("settings.json", "journal.jsonl", self.settings.table)
+        return tuple(self.folder / name for name in names)
 
     @property
     def finished(self) -> bool:
@@ -73,7 +82,7 @@ def _folders(folder: Path, depth: int) -> Iterator[Path]:
 def _read(folder: Path) -> Found | None:
     """Return the sweep in a folder; None if it holds none."""
     path, journal = folder / "settings.json", folder / "journal.jsonl"
-    if not path.is_file():
+    if not os.path.lexists(path):
         return None
     told = _told(path)
     if told is None:
@@ -89,7 +98,7 @@ def _read(folder: Path) -> Found | None:
         where = ".".join(map(str, first["loc"][1:]))
         raise UserError(f"{path}: is damaged: {where}: {first['msg']}") from error
     table = folder / settings.table
-    if table.is_file():
+    if os.path.lexists(table):
         rows = _table(table)
         if len(rows) != settings.total:
             raise UserError(
@@ -100,7 +109,7 @@ def _read(folder: Path) -> Found | None:
         rows = list({row.key: row for row in rows_in(journal)}.values()) if journal.exists() else []
     for row in rows:
         if not settings.holds(row):
-            source = table if table.is_file() else journal
+            source = table if os.path.lexists(table) else journal
             raise UserError(
                 f"{source}: is damaged: {row.planner}, {row.drive}, {row.layout} {row.count}, run "
                 f"{row.run} is no episode of this sweep"
@@ -109,16 +118,18 @@ def _read(folder: Path) -> Found | None:
 
 
 def _told(path: Path) -> dict[str, Any] | None:
+    content = read_bytes(path, what="the settings of a sweep", most=MAX_SETTINGS)
     try:
-        told = json.loads(path.read_text(encoding="utf-8"))
+        told = json.loads(content)
     except (ValueError, RecursionError):
         return None
     return told if isinstance(told, dict) else None
 
 
 def _table(path: Path) -> list[Row]:
+    content = read_bytes(path, what="the table of a sweep", most=MAX_BYTES)
     try:
-        return from_csv(path.read_text(encoding="utf-8"))
+        return from_csv(content.decode())
     except UnicodeDecodeError as error:
         raise UserError(f"{path}: is damaged: no UTF-8 text") from error
     except ValueError as error:

@@ -4,12 +4,34 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from fuzzyq_bullet.experiments.escape.plan import TRAPS
 from fuzzyq_bullet.experiments.learning_gain.plan import LEARNED
 from fuzzyq_bullet.experiments.sweep.rows import Row
 from fuzzyq_bullet.scenario import Drive, Limits
+
+
+def _planner(told: dict[str, Any]) -> dict[str, Any]:
+    """Return the settings of a planner, whose name and weights are what they must be.
+
+    Raises:
+        ValueError: If they are not.
+    """
+    if not isinstance(told.get("name"), str):
+        raise ValueError("a planner has a name")
+    weights = told.get("weights", [1.0, 1.0])
+    if not (
+        isinstance(weights, list)
+        and len(weights) == 2
+        and all(isinstance(one, int | float) and 0.0 < one <= 2.0 for one in weights)
+    ):
+        raise ValueError("the weights of a planner are two numbers, more than 0 and at most 2")
+    return told
+
+
+Whole: TypeAlias = Annotated[int, Field(ge=0, le=2**63 - 1)]
+Planner: TypeAlias = Annotated[dict[str, Any], AfterValidator(_planner)]
 
 
 class _Settings(BaseModel):
@@ -26,12 +48,19 @@ class Planners(_Settings):
     """
 
     sweep: Literal["success", "steps steps"]
-    planners: dict[str, dict[str, Any]] = Field(min_length=1)
+    planners: dict[str, Planner] = Field(min_length=1)
     drive: Drive
-    counts: list[int] = Field(min_length=1)
-    runs: int
-    seed: int
+    counts: list[Whole] = Field(min_length=1)
+    runs: Whole
+    seed: Whole
     limits: Limits
+
+    @model_validator(mode="after")
+    def _fixed_have_weights(self) -> Planners:
+        for name, told in self.planners.items():
+            if name.startswith("fixed-") and "weights" not in told:
+                raise ValueError(f"planners: {name} has no weights")
+        return self
 
     @property
     def table(self) -> str:
@@ -58,7 +87,7 @@ class Search(_Settings):
 
     sweep: Literal["learning grid", "steps grid"]
     drive: Drive
-    episodes: int
+    episodes: Whole
     candidates: list[str] = Field(min_length=1)
 
     @property
@@ -82,9 +111,9 @@ class Comparison(_Settings):
 
     sweep: Literal["learning comparison"]
     drive: Drive
-    seed: int
-    environments: int
-    counts: list[int] = Field(min_length=1)
+    seed: Whole
+    environments: Whole
+    counts: list[Whole] = Field(min_length=1)
     fixed: list[str]
 
     @property
@@ -107,13 +136,13 @@ class Escape(_Settings):
     """Those of ``fuzzyq bench escape``."""
 
     sweep: Literal["escape"]
-    planner: dict[str, Any]
-    drives: list[Drive]
-    runs: int
-    counts: list[int]
-    traps: int
-    rectangles: list[int]
-    seed: int
+    planner: Planner
+    drives: list[Drive] = Field(min_length=1)
+    runs: Whole
+    counts: list[Whole]
+    traps: Whole
+    rectangles: list[Whole]
+    seed: Whole
 
     @property
     def table(self) -> str:

@@ -18,19 +18,23 @@ Made: TypeAlias = "Film | bytes"
 
 
 def make(
-    things: Sequence[Wanted | int], workers: int | None, done: Callable[[], None]
+    things: Sequence[Wanted | int],
+    workers: int | None,
+    plugins: Sequence[str],
+    done: Callable[[], None],
 ) -> list[Made]:
     """Return the film of each run, and each figure as a PNG, in their order.
 
     Args:
         things: Runs to be filmed, and numbers of figures.
         workers: How many at a time; None for one a core.
+        plugins: Modules that each worker imports first.
         done: Called after each.
 
     Raises:
         UserError: If no film can be written, or a worker process dies.
     """
-    pool = Pool(workers)
+    pool = Pool(workers, plugins=tuple(plugins))
     made: dict[int, Made] = {}
     # One folder for all, made here: workers that are ended leave theirs behind.
     with tempfile.TemporaryDirectory(prefix="fuzzyq-", ignore_cleanup_errors=True) as folder:

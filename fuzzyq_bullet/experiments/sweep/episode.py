@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fuzzyq_bullet.episode import run
+from fuzzyq_bullet.errors import PlannerError
 from fuzzyq_bullet.experiments.sweep.jobs import Job
 from fuzzyq_bullet.experiments.sweep.rows import Row
 from fuzzyq_bullet.metrics import result_of
@@ -42,6 +43,8 @@ def run_job(job: Job) -> Done:
         trajectory = run(scenario)
         row = Row.of(job, result_of(trajectory), way)
         return Done(row, _record(trajectory) if way and not row.success else None)
+    except PlannerError as error:
+        return Done(Row.failed(job, str(error), way))
     except Exception as error:
         return Done(Row.failed(job, f"{type(error).__name__}: {error}", way))
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.files import writable_folder, write_text, written_beside
+from fuzzyq_bullet.files import read_bytes, writable_folder, write_text, written_beside
 
+MAX_SETTINGS = 10_000_000
+"""Largest file of settings that is read (bytes)."""
 _ABSENT = "nothing"
 
 
@@ -55,10 +59,18 @@ class Folder:
         writable_folder(self.records)
 
     def tidy(self) -> None:
-        """Remove what a process left half-written when it was killed; none may be at work."""
-        for folder in (self.path, self.records):
-            for left in folder.glob(".*.part"):
-                shutil.rmtree(left, ignore_errors=True)
+        """Remove what a sweep left half-written here when it was killed; none may be at work.
+
+        Nothing else: others keep files here too, and other commands may be writing theirs.
+        """
+        for folder, name in (
+            (self.path, r"settings\.json|[a-z]+\.csv"),
+            (self.records, r".+\.npz"),
+        ):
+            ours = re.compile(rf"\.({name})\.[0-9a-f]{{8}}\.part")
+            for left in folder.iterdir():
+                if ours.fullmatch(left.name) and left.is_dir() and not left.is_symlink():
+                    shutil.rmtree(left, ignore_errors=True)
 
     def keep(self, name: str, record: bytes) -> None:
         """Keep a record (``.npz``).
@@ -70,13 +82,11 @@ class Folder:
             part.write_bytes(record)
 
     def _read(self) -> dict[str, Any] | None:
-        try:
-            known = json.loads(self._settings.read_text(encoding="utf-8"))
-        except FileNotFoundError:
+        if not os.path.lexists(self._settings):
             return None
-        except OSError as error:
-            problem = error.strerror or error
-            raise UserError(f"{self._settings}: cannot be read: {problem}") from error
+        content = read_bytes(self._settings, what="the settings of a sweep", most=MAX_SETTINGS)
+        try:
+            known = json.loads(content)
         except (ValueError, RecursionError):
             known = None
         if not isinstance(known, dict):

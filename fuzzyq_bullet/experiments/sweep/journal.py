@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -12,6 +13,19 @@ from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.sweep.rows import Row
+from fuzzyq_bullet.files import read_bytes
+
+MAX_BYTES = 1 << 30
+"""Largest journal that is read: over a million rows."""
+_APPEND = (
+    os.O_RDWR
+    | os.O_CREAT
+    | os.O_APPEND
+    | getattr(os, "O_NOFOLLOW", 0)
+    | getattr(os, "O_NONBLOCK", 0)
+    | getattr(os, "O_BINARY", 0)
+)
+"""Follows no link, and waits for nobody at the other end of a FIFO."""
 
 
 def rows_in(path: Path) -> list[Row]:
@@ -20,10 +34,7 @@ def rows_in(path: Path) -> list[Row]:
     Raises:
         UserError: If it cannot be read.
     """
-    try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror or error}") from error
+    text = read_bytes(path, what="a journal of rows", most=MAX_BYTES)
     return _rows(text[: text.rfind(b"\n") + 1])
 
 
@@ -49,7 +60,7 @@ class Journal:
 
     def __enter__(self) -> Journal:
         try:
-            self._file = file = self._path.open("a+b")
+            self._file = file = self._opened()
             self._lock(file)
             file.seek(0)
             text = file.read()
@@ -58,12 +69,21 @@ class Journal:
                 file.truncate(len(whole))
         except OSError as error:
             self._close()
+            if self._path.is_symlink():  # it may lead to a file of somebody else's
+                raise UserError(f"{self._path}: is a link; use another --out") from error
             raise self._problem(error) from error
         except UserError:
             self._close()
             raise
         self.rows = _rows(whole)
         return self
+
+    def _opened(self) -> BinaryIO:
+        descriptor = os.open(self._path, _APPEND, 0o666)
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            os.close(descriptor)
+            raise UserError(f"{self._path}: is not a file; use another --out")
+        return os.fdopen(descriptor, "a+b")
 
     def append(self, row: Row) -> None:
         """Write a row; when this returns, it is on disk.
@@ -93,8 +113,10 @@ class Journal:
                 self._file.close()
 
     def _lock(self, file: BinaryIO) -> None:
-        import fcntl
-
+        try:
+            import fcntl
+        except ImportError:  # Windows
+            return
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:

@@ -12,6 +12,7 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias, TypeVar
 
+from fuzzyq_bullet.checks.plugins import load_plugins
 from fuzzyq_bullet.experiments.sweep.episode import Done
 from fuzzyq_bullet.experiments.sweep.jobs import Job
 from fuzzyq_bullet.experiments.sweep.rows import Row
@@ -21,7 +22,9 @@ Work: TypeAlias = Callable[[Job], Done]
 T = TypeVar("T")
 R = TypeVar("R")
 
-_INTERRUPTS = (signal.SIGINT, signal.SIGALRM)
+_INTERRUPTS = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGALRM") if hasattr(signal, name)
+)
 """Ctrl-C, and one that had to wait for an import to end (``cli.process``)."""
 
 KILLED = "its worker process died twice: killed, out of memory, or crashed in a library"
@@ -36,12 +39,14 @@ class Pool:
         backend: Name of a backend that joblib knows.
         options: What else that backend is to be told (``joblib.parallel_config``).
         deaths: What it raises when a worker dies; by default what loky does.
+        plugins: Modules that each worker of this machine imports first.
     """
 
     workers: int | None = None
     backend: str = "loky"
     options: Mapping[str, Any] = field(default_factory=dict)
     deaths: tuple[type[BaseException], ...] | None = None
+    plugins: tuple[str, ...] = ()
 
 
 def finished(jobs: Sequence[Job], work: Work, pool: Pool) -> Generator[Done, None, None]:
@@ -144,7 +149,7 @@ def _loky_options(pool: Pool) -> dict[str, Any]:
     return {
         "inner_max_num_threads": 1,
         "initializer": _begin_worker,
-        "initargs": (os.getpid(),),
+        "initargs": (os.getpid(), pool.plugins),
     }
 
 
@@ -156,6 +161,9 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
     answer with a traceback. What is blocked here stays so in what is started meanwhile; this
     process itself gets the signal afterwards.
     """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
     from multiprocessing import resource_tracker
 
     from joblib.externals.loky.backend import resource_tracker as loky_tracker
@@ -181,8 +189,8 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
             signal.raise_signal(late)
 
 
-def _begin_worker(parent: int) -> None:
-    """End this worker when its parent process ends, even by ``kill -9``."""
+def _begin_worker(parent: int, plugins: Sequence[str]) -> None:
+    """Load plugins, and end this worker when its parent process ends, even by ``kill -9``."""
 
     def watch() -> None:
         while os.getppid() == parent:
@@ -190,3 +198,6 @@ def _begin_worker(parent: int) -> None:
         os._exit(1)
 
     threading.Thread(target=watch, name="watch-parent", daemon=True).start()
+    # A terminal's Ctrl-C is for the parent, so a KeyboardInterrupt here is always a planner's own.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    load_plugins(plugins)

@@ -14,9 +14,10 @@ from fuzzyq_bullet.experiments.report.parts import blocks
 from fuzzyq_bullet.experiments.report.parts.blocks import Section
 from fuzzyq_bullet.experiments.report.parts.steps import pair_of
 from fuzzyq_bullet.experiments.report.settings import Search
+from fuzzyq_bullet.platforms import pybullet_in_words
 from fuzzyq_bullet.version import __version__
 
-PACKAGES = ("pybullet", "numpy", "scipy", "matplotlib", "pillow", "imageio-ffmpeg")
+PACKAGES = ("numpy", "scipy", "matplotlib", "pillow", "imageio-ffmpeg")
 
 
 def section(evaluation: Evaluation, report: str) -> Section:
@@ -39,7 +40,8 @@ def section(evaluation: Evaluation, report: str) -> Section:
     lines += [commands.escape(settings, one.folder) for one, settings in evaluation.escape]
     versions = {one.settings.version for one in evaluation.sweeps}
     others = sorted(versions - {__version__})
-    packages = ", ".join(f"{name} {metadata.version(name)}" for name in PACKAGES)
+    versions_of = [pybullet_in_words(), *(f"{name} {metadata.version(name)}" for name in PACKAGES)]
+    packages = ", ".join(versions_of)
     told = [
         f"Page: fuzzyq_bullet {__version__}, {packages}, Python {platform.python_version()}, "
         f"{platform.platform()}.",

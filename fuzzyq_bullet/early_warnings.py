@@ -1,0 +1,73 @@
+"""What is allowed and yet hardly meant: told before a run, and no verdict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from fuzzyq_bullet.metrics import has_way
+from fuzzyq_bullet.scenario import Scenario
+from fuzzyq_bullet.scenario.files import problem_lines
+from fuzzyq_bullet.scenario.problems import Loc, Problem
+
+NO_WAY = "there is no way from the start to the goal for the robot, wherever it drives"
+_ANGLES = ("heading", "yaw", "direction")
+"""What keys of angles are called, all in radians."""
+
+
+def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
+    """Return one line for each thing that is probably a mistake, ``FILE:LINE: KEY: ...``.
+
+    They are: no way to the goal at all, although it is expected to be reached; a limit of time, of
+    decisions or an expectation that the robot could not keep on a straight line at full speed; an
+    angle that looks like degrees.
+
+    Args:
+        file: The scenario file.
+        given: What it says.
+        realised: The same with every obstacle listed.
+    """
+    found = [*_degrees(given), *_too_short(given)]
+    if given.expect.outcome == "goal" and has_way(realised) is False:
+        found.append(Problem(("goal",), NO_WAY))
+    return problem_lines(file, found)
+
+
+def _degrees(scenario: Scenario) -> Iterator[Problem]:
+    data = scenario.model_dump(include={"start", "goal", "obstacles", "random"})
+    for loc, value in _numbers(data, ()):
+        if loc[-1] in _ANGLES and abs(value) > math.tau:
+            turned = math.radians(value)
+            yield Problem(
+                loc, f"{value:g} rad looks like degrees; did you mean {round(turned, 2):g}?"
+            )
+
+
+def _numbers(data: Any, loc: Loc) -> Iterator[tuple[Loc, float]]:
+    if isinstance(data, dict):
+        for key, value in data.items():
+            yield from _numbers(value, (*loc, key))
+    elif isinstance(data, list | tuple):
+        for i, value in enumerate(data):
+            yield from _numbers(value, (*loc, i))
+    elif isinstance(data, int | float):
+        yield loc, data
+
+
+def _too_short(scenario: Scenario) -> Iterator[Problem]:
+    if scenario.drive != "wheels" or scenario.expect.outcome != "goal":
+        return  # the point robot has no speed
+    goal, speed = scenario.goal, scenario.robot.max_speed
+    way = math.dist(scenario.start.position, goal.position) - goal.radius
+    least = way / speed
+    for loc, limit in (
+        (("limits", "time"), scenario.limits.time),
+        (("expect", "max_time"), scenario.expect.max_time),
+    ):
+        if limit is not None and limit < least:
+            yield Problem(
+                loc,
+                f"{limit:g} s is too short: the straight line of {way:.1f} m to the goal takes "
+                f"{least:.1f} s at {speed:g} m/s",
+            )

@@ -1,0 +1,84 @@
+"""The files of a run: what they are called, what they may replace, and what they may not."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.planning.settings import PolicySettings
+from fuzzyq_bullet.scenario import Scenario, find_scenario
+from fuzzyq_bullet.trajectory import Trajectory
+
+_ASIDE = {"description", "expect"}
+"""What makes a scenario no other run."""
+
+
+def run_name(given: Scenario, asked: Scenario) -> str:
+    """Return what the files of a run are called: ``mixed``, or ``mixed-improved-fuzzy-seed7``.
+
+    What differs from the scenario's own settings is part of the name, so that runs to be compared
+    lie side by side.
+
+    Args:
+        given: The scenario as its file says.
+        asked: The same with the planner, drive and seed that were asked for.
+    """
+    parts = [given.name]
+    if asked.planner.name != given.planner.name:
+        parts.append(asked.planner.name)
+    if asked.drive != given.drive:
+        parts.append(asked.drive)
+    if asked.seed != given.seed:
+        parts.append(f"seed{asked.seed}")
+    return "-".join(parts)
+
+
+def scenario_inputs(source: str | os.PathLike[str], scenario: Scenario) -> list[Path]:
+    """Return the files that a scenario is read from: its own, and the policy it names."""
+    planner = scenario.planner
+    policy = planner.policy if isinstance(planner, PolicySettings) else None
+    return [find_scenario(source), *([Path(policy)] if policy is not None else [])]
+
+
+def plugin_inputs(plugins: Sequence[str]) -> list[Path]:
+    """Return the files that loaded plugins were read from."""
+    modules = [getattr(sys.modules.get(name), "__file__", None) for name in plugins]
+    files = [name for name in plugins if name.endswith(".py")]
+    return [Path(str(file)) for file in (*modules, *files) if file]
+
+
+def refuse_other_run(record: Path, others: Iterable[Path], scenario: Scenario) -> None:
+    """Make sure that what is there was written by the same run, which may be done again.
+
+    Args:
+        record: The record that is to be written.
+        others: The films and the result beside it.
+        scenario: What is to be run, every obstacle listed.
+
+    Raises:
+        UserError: If a file there is of another run, or nothing tells of which.
+    """
+    there = [path for path in (record, *others) if os.path.lexists(path)]
+    if not there:
+        return
+    try:
+        before = Trajectory.load(record).scenario
+    except UserError as error:
+        raise UserError(
+            f"{there[0]}: is there already, and no record tells of which run; "
+            "--replace replaces it, another --out keeps it"
+        ) from error
+    differs = _differences(before, scenario)
+    if differs:
+        raise UserError(
+            f"{record}: is of another run ({', '.join(differs)} differs); "
+            "--replace replaces it, another --out keeps it"
+        )
+
+
+def _differences(before: Scenario, now: Scenario) -> list[str]:
+    old, new = (one.model_dump(exclude=_ASIDE) for one in (before, now))
+    return [key for key in new if old[key] != new[key]]

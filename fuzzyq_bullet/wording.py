@@ -1,0 +1,50 @@
+"""Words that every message about a mistake is made of: values, near misses, what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+
+def shorten(value: Any) -> str:
+    """Return a value as it would be written in the file, at most about 60 characters long."""
+    match value:
+        case None:
+            return "nothing"
+        case bool():
+            return "true" if value else "false"
+        case float() if not math.isfinite(value):
+            return "nan" if math.isnan(value) else "inf" if value > 0 else "-inf"
+        case dict():
+            return "a mapping"
+        case list() | tuple():
+            if len(value) > 6 or any(isinstance(v, dict | list | tuple) for v in value):
+                return f"a list of {len(value)}"
+            return "[" + ", ".join(shorten(v) for v in value) + "]"
+        case _ if hasattr(value, "model_fields"):
+            return f"a {type(value).__name__}"
+    text = repr(value[:80]) if isinstance(value, str) else repr(value)
+    return text if len(text) <= 60 else f"{text[:56]} ..."
+
+
+def did_you_mean(word: Any, allowed: Iterable[str]) -> str:
+    """Return ``did you mean 'radius'? `` or nothing, for a word that is not allowed."""
+    close = difflib.get_close_matches(str(word)[:100], list(allowed), n=1)
+    return f"did you mean {close[0]!r}? " if close else ""
+
+
+def not_one_of(what: str, value: Any, allowed: Sequence[str]) -> str:
+    """Return ``no drive 'weels'; did you mean 'wheels'? allowed: wheels, kinematic``."""
+    hint = did_you_mean(value, allowed)
+    return f"no {what} {shorten(value)}; {hint}allowed: {', '.join(allowed)}"
+
+
+def error_in_words(error: BaseException) -> str:
+    """Return ``ValueError: no idea`` on one line, for an exception of code that is not ours."""
+    try:
+        message = " ".join(str(error).split())[:300]
+    except Exception:  # even its words may fail
+        message = ""
+    return type(error).__name__ + (f": {message}" if message else "")
