@@ -22,7 +22,7 @@ CANDIDATES := $(foreach minor,13 12 11 10,python3.$(minor) \
 	$(wildcard $(PYENV_ROOT)/versions/3.$(minor).*/bin/python)) python3 python
 endif
 
-SUITABLE := import sys; sys.exit(sys.implementation.name != "cpython" \
+SUITABLE := import sys, venv, ensurepip; sys.exit(sys.implementation.name != "cpython" \
 	or not (3, 10) <= sys.version_info[:2] <= (3, 13))
 
 .DEFAULT_GOAL := help
@@ -36,7 +36,7 @@ help:
 	@echo 'make setup   only install; all of the above do so first where it is needed'
 	@echo 'make policies  train again what assets/policies holds, to the same bytes'
 	@echo 'make lock    resolve the dependencies anew into requirements.lock'
-	@echo 'make clean   remove .venv and what tools left behind; videos in $(OUT) stay'
+	@echo 'make clean   remove .venv, .venvs and what tools left behind; videos in $(OUT) stay'
 	@echo 'All take PYTHON=/path/to/python3.12 (3.10 to 3.13); without it the newest there is.'
 
 setup: $(READY)
@@ -71,14 +71,13 @@ policies: $(READY)
 
 # Versions and hashes alone: where packages come from is for whoever installs them to say.
 lock: $(READY)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check 'uv>=0.8'
 	@$(BIN)/uv pip compile pyproject.toml --extra test --extra lint --output-file requirements.lock \
 		--universal --python-version 3.10 --generate-hashes --upgrade --quiet \
 		--no-emit-index-url --no-emit-find-links --no-annotate --no-header
 	@! grep -nE '://|^ *-(-index|-extra-index|-find-links|i|f)' requirements.lock
 
 clean:
-	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) .venvs build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(READY): pyproject.toml requirements.lock

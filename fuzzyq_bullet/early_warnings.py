@@ -10,10 +10,9 @@ from fuzzyq_bullet.metrics import has_way
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.files import problem_lines
 from fuzzyq_bullet.scenario.problems import Loc, Problem
+from fuzzyq_bullet.scenario.shapes import ANGLE_KEYS
 
 NO_WAY = "there is no way from the start to the goal for the robot, wherever it drives"
-_ANGLES = ("heading", "yaw", "direction")
-"""What keys of angles are called, all in radians."""
 
 
 def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
@@ -37,7 +36,7 @@ def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
 def _degrees(scenario: Scenario) -> Iterator[Problem]:
     data = scenario.model_dump(include={"start", "goal", "obstacles", "random"})
     for loc, value in _numbers(data, ()):
-        if loc[-1] in _ANGLES and abs(value) > math.tau:
+        if loc[-1] in ANGLE_KEYS and abs(value) > math.tau:
             turned = math.radians(value)
             yield Problem(
                 loc, f"{value:g} rad looks like degrees; did you mean {round(turned, 2):g}?"

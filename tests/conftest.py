@@ -19,6 +19,20 @@ from fuzzyq_bullet.cli import app
 hypothesis.settings.register_profile("fuzzyq", deadline=None)
 hypothesis.settings.load_profile("fuzzyq")
 
+SLOW = (
+    *("check", "cli_interrupt", "cli_train", "cluster", "escape_memory", "escape_table"),
+    *("figure_panels", "gym", "layouts", "learned_weights", "learning_gain", "learning_training"),
+    *("oracle", "package", "pythons", "report", "success", "sweep", "video", "video_picture"),
+)
+"""Modules of tests that take long: ``-m "not slow"`` leaves them out."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if item.path.stem.removeprefix("test_") in SLOW:
+            item.add_marker("slow")
+
+
 FUZZYQ = Path(sys.executable).with_name("fuzzyq")
 
 Call: TypeAlias = Callable[..., "subprocess.CompletedProcess[str]"]

@@ -413,3 +413,17 @@ def test_digests_count_on_one_platform_only(verdicts: dict[str, Verdict]) -> Non
     assert "another trajectory" in compare(here, now)[0]
     assert not compare(here.model_copy(update={"platform": "another"}), now)
     assert not compare(here.model_copy(update={"result": now}), now)
+
+
+def test_nothing_that_github_would_obey_is_echoed(fuzzyq: Call, tmp_path: Path) -> None:
+    (tmp_path / "::stop-commands::x.yaml").write_text("name: x\n")
+    (tmp_path / "named.yaml").write_text("name: '##[error]x'\nstart: 1\n")
+    (tmp_path / "::set-output name=a::b.yaml").write_text(
+        "name: stuck\nstart: {position: [1, 1]}\ngoal: {position: [9, 9]}\nlimits: {time: 0.5}\n"
+    )
+    done = fuzzyq("check", ".", "--github", cwd=tmp_path)
+    assert done.returncode == 2
+    for line in (done.stdout + done.stderr).splitlines():
+        command = line.strip().startswith("::")
+        assert not command or line.startswith(("::error ", "::warning "))
+        assert command or "##[" not in line

@@ -20,6 +20,7 @@ from fuzzyq_bullet import (
     Planner,
     PlannerSettings,
     Trajectory,
+    UserError,
     load_scenario,
     register_planner,
     result_of,
@@ -176,3 +177,85 @@ def test_an_installed_package_runs_away_from_the_checkout(elsewhere: Path, tmp_p
     result = json.loads(call("fuzzyq", "run", "open-field", "--no-video", "--json"))
     assert result["outcome"] == "goal"
     assert (tmp_path / "out" / "open-field.npz").exists()
+
+
+@pytest.mark.parametrize(
+    "imports",
+    [
+        "import fuzzyq_bullet, gymnasium",
+        "import gymnasium, fuzzyq_bullet",
+        "import fuzzyq_bullet.gym",
+    ],
+)
+def test_the_environments_are_known_to_gymnasium_and_no_physics_is_loaded(imports: str) -> None:
+    code = (
+        f"import sys\n{imports}\nimport gymnasium\n"
+        "ids = [name for name in gymnasium.registry if name.startswith('fuzzyq_bullet/')]\n"
+        "print(len(ids), gymnasium.spec(ids[0]).id == ids[0], 'pybullet' in sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "2 True False\n"
+
+
+def test_a_trajectory_is_one_short_line_and_equal_to_its_like() -> None:
+    short = with_options(load_scenario("boxes"), drive="kinematic")
+    one, same, other = run(short), run(short), run(with_options(short, planner="fuzzy"))
+    assert one == same
+    assert hash(one) == hash(same)
+    assert one != other
+    assert one != "boxes"
+    text = repr(one)
+    assert text.startswith("<Trajectory boxes: goal after ")
+    assert "\n" not in text
+    assert len(text) < 100
+
+
+def test_what_python_users_may_do_wrong_is_one_clear_error(tmp_path: Path) -> None:
+    from fuzzyq_bullet.episode import Episode, run_in
+    from fuzzyq_bullet.learning import load_policy
+    from fuzzyq_bullet.physics.sight import Sight
+    from fuzzyq_bullet.planning import ImprovedFuzzyPlanner, ImprovedFuzzySettings
+    from fuzzyq_bullet.scenario import dump_scenario, parse_scenario
+
+    boxes = with_options(load_scenario("boxes"), drive="kinematic")
+    mixed = with_options(load_scenario("mixed"), drive="kinematic")
+    with Sight(boxes.obstacles, boxes.arena) as world:
+        with pytest.raises(ValueError, match="the world was not built for the scenario mixed"):
+            run_in(world, mixed, ImprovedFuzzyPlanner(ImprovedFuzzySettings()))
+        episode = Episode(world, boxes)
+        while episode.outcome is None:
+            episode.advance(Decision(heading=0.0, step=0.0, hopeless=True))
+        with pytest.raises(ValueError, match=r"the episode is over \(stuck\); begin another"):
+            episode.advance(Decision(heading=0.0, step=0.0))
+    unknown = boxes.model_copy(update={"planner": PlannerSettings(name="elsewhere")})
+    with pytest.raises(UserError, match=r"no planner 'elsewhere'; .* --plugin FILE"):
+        run(unknown)
+    policy = load_policy(str(ROOT / "assets" / "policies" / "q-lambda.json"))
+    policy.save(str(tmp_path / "mine.json"))
+    assert load_policy(str(tmp_path / "mine.json")) == policy
+
+    class Odd(PlannerSettings):
+        name: Literal["odd"] = "odd"
+        table: dict[str, float] = {}  # noqa: RUF012 (pydantic copies it)
+
+    register_planner("odd", Odd, lambda settings, rng: None)  # type: ignore[arg-type,return-value]
+    odd = boxes.model_copy(update={"planner": Odd(table={"a, b": 1.0, "c: {": 2.0, "yes": 3.0})})
+    assert parse_scenario(dump_scenario(odd)) == odd
+
+
+@pytest.mark.parametrize(("ending", "magic"), [(".gif", b"GIF89a"), (".webp", b"RIFF")])
+def test_an_animated_picture_is_what_its_name_says(
+    ending: str, magic: bytes, filmed: Path, tmp_path: Path
+) -> None:
+    from PIL import Image
+
+    from fuzzyq_bullet.video import record
+
+    path = tmp_path / f"short{ending}"
+    info = record(Trajectory.load(filmed / "short.npz"), str(path), speed=4)
+    assert path.read_bytes().startswith(magic)
+    with Image.open(path) as image:
+        assert image.size == info.size == (640, 360)
+        assert 1 < getattr(image, "n_frames", 1) <= info.frames
+    with pytest.raises(UserError, match=r"short\.avi: a film ends in \.mp4"):
+        record(Trajectory.load(filmed / "short.npz"), tmp_path / "short.avi")

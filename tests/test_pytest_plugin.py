@@ -134,3 +134,40 @@ def test_it_is_installed_as_a_plugin_and_takes_nothing_else(project: Path) -> No
     assert entry.value == "fuzzyq_bullet.pytest_plugin"
     nothing = pytest_in(project / "elsewhere")
     assert nothing.returncode == pytest.ExitCode.NO_TESTS_COLLECTED
+
+
+CHATTY = """\
+from typing import Literal
+from fuzzyq_bullet import Decision, PlannerSettings, register_planner
+class Settings(PlannerSettings):
+    name: Literal["configured"] = "configured"
+class Ahead:
+    def decide(self, seen):
+        return Decision(heading=0.1, step=0.4)
+register_planner("configured", Settings, lambda settings, rng: Ahead())
+"""
+
+
+def test_a_test_by_hand_knows_the_planners_of_the_configuration(tmp_path: Path) -> None:
+    (tmp_path / "pytest.ini").write_text("[pytest]\nfuzzyq_plugins = planners/own.py\n")
+    (tmp_path / "planners").mkdir()
+    (tmp_path / "planners" / "own.py").write_text(CHATTY)
+    (tmp_path / "short.yaml").write_text(SHORT)
+    (tmp_path / "test_it.py").write_text(
+        "def test_it(run_scenario):\n"
+        "    ran = run_scenario('short.yaml', planner='configured')\n"
+        "    assert ran.passed, ran.explanation\n"
+    )
+    done = pytest_in(tmp_path)
+    assert "1 passed" in done.stdout, done.stdout
+
+
+def test_a_scenario_that_is_no_file_is_a_failure_and_not_passed_over(tmp_path: Path) -> None:
+    (tmp_path / "dead.scenario.yaml").symlink_to("nowhere")
+    (tmp_path / "loop.scenario.yaml").symlink_to("loop.scenario.yaml")
+    os.mkfifo(tmp_path / "pipe.scenario.yaml")
+    done = pytest_in(tmp_path)
+    assert done.returncode == 1
+    assert "3 failed" in done.stdout
+    assert "cannot be read: a link to nowhere, which is not there" in done.stdout
+    assert "pipe.scenario.yaml: is not a regular file" in done.stdout

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import typing
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner_names, settings_for
 from fuzzyq_bullet.scenario.models import Obstacle, Scenario
+from fuzzyq_bullet.scenario.shapes import ANGLE_KEYS
 from fuzzyq_bullet.wording import did_you_mean, shorten
 
 if TYPE_CHECKING:
@@ -102,7 +104,10 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
         allowed = re.findall("'([^']*)'", context["expected"])
         return Problem(loc, _refusal(f"got {shorten(value)}", value, allowed))
     say = _WORDING.get(kind)
-    return Problem(loc, say(value, context) if say else _plain(error["msg"]))
+    message = say(value, context) if say else _plain(error["msg"])
+    if loc[-1] in ANGLE_KEYS and kind in ("less_than_equal", "greater_than_equal"):
+        message += f"; radians are meant: {round(math.radians(value), 2):g}?"
+    return Problem(loc, message)
 
 
 def _without_tag(loc: Loc) -> Loc:

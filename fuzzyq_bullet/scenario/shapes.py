@@ -14,6 +14,8 @@ Count: TypeAlias = Annotated[int, Strict()]
 Flag: TypeAlias = Annotated[bool, Strict()]
 Point: TypeAlias = tuple[Coordinate, Coordinate]
 
+ANGLE_KEYS = ("heading", "yaw", "direction")
+"""What keys of angles are called, all in radians."""
 MAX_OBSTACLES = 10_000
 ROBOT_RADIUS = 0.2
 """Radius of the robot's disc (m): one unit of the paper; the shape in ``assets/robot.urdf``."""
