@@ -197,7 +197,7 @@ class Trajectory:
         archive = io.BytesIO()
         np.savez_compressed(archive, **arrays)
         with written_beside(Path(path)) as part:
-            part.write_bytes(archive.getbuffer())
+            part.write_bytes(archive.getvalue())
 
     @classmethod
     def load(cls, path: Path | str) -> Trajectory:

@@ -37,9 +37,7 @@ def interpreters() -> dict[int, Path]:
 
 
 SELF = "import sys, venv; v = sys.version_info; print(sys.implementation.name, f'{v[0]}.{v[1]}')"
-OTHERS = {
-    minor: path for minor, path in interpreters().items() if minor != sys.version_info.minor
-}
+OTHERS = {minor: path for minor, path in interpreters().items() if minor != sys.version_info.minor}
 
 
 def environment(minor: int) -> Path:

@@ -56,7 +56,7 @@ class Checkpoint:
         content = io.BytesIO()
         np.savez(content, head=np.frombuffer(head, np.uint8), table=self.table, curve=self.curve)
         with written_beside(Path(path)) as part:
-            part.write_bytes(content.getbuffer())
+            part.write_bytes(content.getvalue())
 
     @classmethod
     def find(cls, path: Path) -> Checkpoint | None:

@@ -55,7 +55,9 @@ class Animation:
         small = self._canvas.resize(SIZE, Image.Resampling.LANCZOS)
         if self._path.suffix.lower() == ".gif":
             # One palette for all frames: where nothing changes, they are the same to the bit.
-            self._palette = self._palette or small.quantize(255, dither=Image.Dither.NONE)
+            self._palette = self._palette or small.quantize(
+                255, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
+            )
             small = small.quantize(palette=self._palette, dither=Image.Dither.NONE).convert("RGB")
         self._frames.append(np.asarray(small))
 
