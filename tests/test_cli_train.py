@@ -441,3 +441,18 @@ def test_every_shipped_policy_has_a_command_and_every_command_a_planner_that_lea
 def test_make_reads_the_commands_from_where_they_are(capsys: pytest.CaptureFixture[str]) -> None:
     runpy.run_path(sys.modules["fuzzyq_bullet.training.shipped"].__file__ or "", None, "__main__")
     assert capsys.readouterr().out.splitlines() == [order.command for order in SHIPPED.values()]
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [("outcome", b"\xff\xfe"), ("outcome", b"go\x1b[2J"), ("total", 1e308), ("steps", -1)],
+)
+def test_a_curve_that_no_training_has_left_is_one_line(
+    column: str, value: object, begun: Files
+) -> None:
+    saved = Checkpoint.load(begun.checkpoint)
+    curve = saved.curve.copy()
+    curve[column][0] = value
+    replace(saved, curve=curve).save(begun.checkpoint)
+    line = refused(*ASKED, "--out", begun.policy, "--resume")
+    assert "damaged: its table or curve cannot be one of a training" in line

@@ -400,3 +400,39 @@ def test_a_page_that_cannot_be_written_is_told_before_the_work(
             report(monkeypatch, folder, "--out", out)
         (line,) = caught.value.problems
         assert re.search("cannot be written|not a folder|--out", line), line
+
+
+DAMAGED_SETTINGS = [
+    ("escape", {"planner": {"name": "improved-fuzzy", "weights": "ab"}}),
+    ("escape", {"planner": {"name": "improved-fuzzy", "weights": [1.0]}}),
+    ("escape", {"planner": {"name": 3}}),
+    ("escape", {"drives": []}),
+    ("escape", {"runs": -1}),
+    ("success", {"planners": {"fixed-1-1": {"name": "improved-fuzzy"}}}),
+    ("success", {"planners": {"fuzzy": {"name": "fuzzy", "weights": {"a": 1}}}}),
+    ("success", {"counts": [-5]}),
+    ("success", {"seed": 1e300}),
+]
+
+
+@pytest.mark.parametrize(("kind", "changes"), DAMAGED_SETTINGS)
+def test_settings_that_no_sweep_has_written_are_one_line(
+    kind: str, changes: dict[str, object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from fuzzyq_bullet.experiments.escape.plan import Plan as EscapePlan
+
+    whole = {
+        "success": plan_of("fuzzy").described(),
+        "escape": EscapePlan(
+            settings=settings_for("improved-fuzzy").model_validate({"name": "improved-fuzzy"}),
+            drives=("kinematic",),
+            runs=1,
+            counts=(5,),
+            traps=0,
+            rectangles=(),
+            seed=0,
+        ).described(),
+    }[kind]
+    write(tmp_path, {"sweep": kind, **whole, **changes}, [], None)
+    with pytest.raises(UserError, match=r"settings\.json: is damaged: "):
+        report(monkeypatch, tmp_path, *PLAIN)

@@ -131,7 +131,7 @@ def _by_walls(world: GrownWorld, centre: Floats, radius: float) -> Floats:
     gap = np.array([width - inset - x, depth - inset - y, x - inset, y - inset])
     meets = gap < radius
     half = np.arccos(np.clip(gap[meets] / radius, -1.0, 1.0))
-    return _intervals(np.arange(4)[meets] * (math.pi / 2), half)
+    return _intervals(np.arange(4.0)[meets] * (math.pi / 2), half)
 
 
 def _by_boxes(world: GrownWorld, centre: Floats, radius: float) -> Floats:

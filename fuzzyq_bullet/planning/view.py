@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from dataclasses import dataclass
-from typing import TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,7 +109,7 @@ def look_around(observation: Observation) -> View:
 
 
 def _gaps(
-    hits: NDArray[np.complex128], headings: Floats, lengths: Floats, radius: float
+    hits: NDArray[Any], headings: NDArray[Any], lengths: Floats, radius: float
 ) -> list[int]:
     """Return the indices of those peaks at whose ends the disc is not stopped on both sides.
 
