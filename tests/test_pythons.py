@@ -16,7 +16,7 @@ LOCK = ROOT / "requirements.lock"
 MINORS = (10, 11, 12, 13)
 DRIVES = """\
 from fuzzyq_bullet import load_scenario, result_of, run, with_options
-for name, drive in (("mixed", "wheels"), ("semicircle", "kinematic"), ("figure-9a", "wheels")):
+for name, drive in (("boxes", "wheels"), ("semicircle", "kinematic"), ("figure-9a", "wheels")):
     print(result_of(run(with_options(load_scenario(name), drive=drive))).digest)
 """
 

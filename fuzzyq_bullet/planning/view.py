@@ -108,9 +108,7 @@ def look_around(observation: Observation) -> View:
     )
 
 
-def _gaps(
-    hits: NDArray[Any], headings: NDArray[Any], lengths: Floats, radius: float
-) -> list[int]:
+def _gaps(hits: NDArray[Any], headings: NDArray[Any], lengths: Floats, radius: float) -> list[int]:
     """Return the indices of those peaks at whose ends the disc is not stopped on both sides.
 
     Args:
