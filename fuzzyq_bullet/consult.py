@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from fuzzyq_bullet.errors import PlannerError, UserError
+from fuzzyq_bullet.errors import PlannerError, Stopped, UserError
 from fuzzyq_bullet.planning import Observation, Planner, PlannerSettings, make_planner
 from fuzzyq_bullet.planning.validation import DecisionError
 from fuzzyq_bullet.wording import error_in_words
@@ -89,7 +89,9 @@ def _blamed(name: str, when: str) -> Iterator[None]:
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             raise
         raise PlannerError(_line(name, when, error)) from error
-    except (Exception, SystemExit) as error:
+    except Stopped:
+        raise
+    except BaseException as error:  # whatever it is: asyncio's and others' are no Exception
         raise PlannerError(_line(name, when, error)) from error
 
 

@@ -21,6 +21,20 @@ class PlannerError(UserError):
     """A planner raised, exited, or decided nonsense; says which one, what, when and where."""
 
 
+class Stopped(BaseException):
+    """A signal asked the process to end: Ctrl-C, ``kill``, or its terminal went away.
+
+    No ``KeyboardInterrupt``, of which libraries make what they like.
+
+    Attributes:
+        status: The exit code that shells use for it: 130 for Ctrl-C, 143 for SIGTERM.
+    """
+
+    def __init__(self, signum: int) -> None:
+        super().__init__(signum)
+        self.status = 128 + signum
+
+
 def printable(text: str) -> str:
     """Return a text as one line that does nothing to a terminal.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import sys
 from collections.abc import Iterable, Sequence
@@ -48,6 +49,17 @@ def plugin_inputs(plugins: Sequence[str]) -> list[Path]:
     modules = [getattr(sys.modules.get(name), "__file__", None) for name in plugins]
     files = [name for name in plugins if name.endswith(".py")]
     return [Path(str(file)) for file in (*modules, *files) if file]
+
+
+def plugin_settings(plugins: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Return what a sweep's settings say of plugins: each file, by its name, as a hash.
+
+    So rows of a planner that was changed since are not taken for its own; nothing without plugins.
+    """
+    hashes = {
+        path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in plugin_inputs(plugins)
+    }
+    return {"plugins": hashes} if hashes else {}
 
 
 def refuse_other_run(record: Path, others: Iterable[Path], scenario: Scenario) -> None:

@@ -42,8 +42,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Note the folders once."""
-    config.stash[_folders] = list(config.getini("fuzzyq_scenarios"))
+    """Note the folders once.
+
+    Raises:
+        pytest.UsageError: If one is not there: what is misspelt must not pass for tested.
+    """
+    folders = [Path(os.path.normpath(folder)) for folder in config.getini("fuzzyq_scenarios")]
+    for folder in folders:
+        if not folder.is_dir():
+            raise pytest.UsageError(f"fuzzyq_scenarios: {folder}: there is no such folder")
+    config.stash[_folders] = folders
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:

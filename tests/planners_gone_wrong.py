@@ -1,5 +1,6 @@
 """A planner that goes wrong as a scenario asks for: ``planner: {name: wrong, how: nan}``."""
 
+import asyncio
 import math
 import os
 import sys
@@ -23,6 +24,8 @@ DECISIONS = {
     "rules": Decision(heading=0.0, step=0.2, rules=((1.0,) * 5,) * 4),
     "weights": Decision(heading=0.0, step=0.2, weights="ab"),
     "turn": Decision(heading=0.0, step=0.2, turn=1e300),
+    "hopeless": Decision(heading=0.0, step=0.2, hopeless="perhaps"),
+    "overflow": Decision(heading=0.0, step=10**400),
     "none": None,
     "tuple": (0.0, 0.2),
 }
@@ -61,6 +64,13 @@ class Wrong:
 
     def recursion(self, observation):
         return self.recursion(observation)
+
+    def cancels(self, observation):
+        raise asyncio.CancelledError
+
+    def forks(self, observation):
+        os.fork()
+        return DECISIONS["none"]
 
     def memory(self, observation):
         raise MemoryError

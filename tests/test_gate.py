@@ -51,6 +51,10 @@ WAYS = {
     "rules": "explained its decision by the rules a list of 4, which must be of size 5",
     "weights": "explained its decision by the weights 'a', which is no number",
     "turn": "explained its decision by the turn 1e+300, which is no number",
+    "hopeless": "decided hopeless 'perhaps', not True or False",
+    "overflow": "decided the step",
+    "cancels": "stopped by CancelledError, after 0.00 s",
+    "forks": "returned None instead of a Decision",
     "none": "returned None instead of a Decision",
     "tuple": "returned a tuple instead of a Decision",
     "raises": "stopped by ValueError: no idea ::error::where to go, after 0.00 s",
@@ -319,5 +323,53 @@ def test_nothing_to_drive_is_no_success(fuzzyq: Call, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     os.mkfifo(tmp_path / "fifo.yaml")
     (tmp_path / "dead.yaml").symlink_to("nowhere")
-    for what in ("empty", "fifo.yaml", "dead.yaml", "*.scenario.yaml", ""):
+    (tmp_path / "well.yaml").write_text(SIMPLE)
+    for what in ("empty", "fifo.yaml", "dead.yaml", "*.scenario.yaml", "*.yaml", ""):
         assert fuzzyq("check", what, cwd=tmp_path).returncode == 2
+
+
+def test_a_folder_that_is_linked_is_looked_into_once() -> None:
+    import tempfile
+
+    from fuzzyq_bullet.checks.collect import find
+
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "real").mkdir()
+        (folder / "real" / "a.yaml").write_text(SIMPLE)
+        (folder / "real" / "back").symlink_to("..")
+        (folder / "tests").mkdir()
+        (folder / "tests" / "link").symlink_to("../real")
+        found = find([str(folder / "tests")])
+        assert [file.name for file in found.files] == ["a.yaml"]
+        assert found.problems == []
+
+
+@pytest.mark.parametrize(
+    ("field", "said"),
+    [
+        ("    gains: object = object()", "its settings cannot be written as JSON"),
+        (
+            "    @pydantic.field_validator('how')\n"
+            "    def _no(cls, value): raise RuntimeError('no')",
+            "its settings cannot be made: RuntimeError: no",
+        ),
+    ],
+)
+def test_settings_that_fail_are_one_line(
+    field: str, said: str, fuzzyq: Call, tmp_path: Path
+) -> None:
+    (tmp_path / "odd.py").write_text(
+        "import pydantic\nfrom typing import Literal\n"
+        "from fuzzyq_bullet import PlannerSettings, register_planner\n"
+        "class Odd(PlannerSettings):\n"
+        "    model_config = pydantic.ConfigDict(arbitrary_types_allowed=True)\n"
+        f"    name: Literal['odd'] = 'odd'\n    how: str = ''\n{field}\n"
+        "register_planner('odd', Odd, lambda settings, rng: None)\n"
+    )
+    (tmp_path / "s.yaml").write_text(SIMPLE + "planner: {name: odd, how: x}\n")
+    for command in ("validate", "run", "check"):
+        done = fuzzyq(command, "s.yaml", "--plugin", "odd.py", cwd=tmp_path)
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert "Traceback" not in done.stderr

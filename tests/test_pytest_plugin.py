@@ -171,3 +171,20 @@ def test_a_scenario_that_is_no_file_is_a_failure_and_not_passed_over(tmp_path: P
     assert "3 failed" in done.stdout
     assert "cannot be read: a link to nowhere, which is not there" in done.stdout
     assert "pipe.scenario.yaml: is not a regular file" in done.stdout
+
+
+def test_a_folder_of_scenarios_that_is_not_there_is_no_pass(tmp_path: Path) -> None:
+    (tmp_path / "pytest.ini").write_text("[pytest]\nfuzzyq_scenarios = scenarois\n")
+    (tmp_path / "test_it.py").write_text("def test_it():\n    pass\n")
+    done = pytest_in(tmp_path)
+    assert done.returncode == pytest.ExitCode.USAGE_ERROR
+    assert "scenarois: there is no such folder" in done.stderr + done.stdout
+
+
+def test_a_folder_of_scenarios_may_lie_beside(tmp_path: Path) -> None:
+    (tmp_path / "project").mkdir()
+    (tmp_path / "shared").mkdir()
+    (tmp_path / "shared" / "short.yaml").write_text(SHORT)
+    (tmp_path / "project" / "pytest.ini").write_text("[pytest]\nfuzzyq_scenarios = ../shared\n")
+    done = pytest_in(tmp_path / "project", "-c", "pytest.ini", "../shared", "--collect-only", "-q")
+    assert "short.yaml::short" in done.stdout

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import glob
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -58,8 +58,7 @@ def _files_of(path: str, problems: list[str]) -> list[Path]:
         if glob.has_magic(path) and not Path(path).exists():
             # Path.glob refuses patterns that begin at the root.
             matches = sorted(glob.glob(path, recursive=True))  # noqa: PTH207
-            files = [Path(match) for match in matches if match.endswith(ENDINGS)]
-            return [file for file in files if file.is_file()]
+            return list(_sound((Path(one) for one in matches if one.endswith(ENDINGS)), problems))
         refuse_dead_link(Path(path))
         return [find_scenario(path)]
     except UserError as error:
@@ -73,16 +72,32 @@ def _below(folder: Path, problems: list[str]) -> Iterator[Path]:
     def note(error: OSError) -> None:
         problems.append(f"{error.filename}: cannot be read: {error.strerror}")
 
-    for place, folders, files in os.walk(folder, onerror=note):
-        folders[:] = [name for name in folders if not name.startswith(".")]
-        for name in files:
-            if name.endswith(ENDINGS) and not name.startswith("."):
-                try:
-                    refuse_dead_link(Path(place, name))
-                except UserError as error:
-                    problems += error.problems
-                else:
-                    yield Path(place, name)
+    seen = set()
+    for place, folders, files in os.walk(folder, onerror=note, followlinks=True):
+        real = os.path.realpath(place)
+        folders[:] = [name for name in folders if not name.startswith(".") and real not in seen]
+        if real in seen:  # a link that leads back
+            continue
+        seen.add(real)
+        named = [name for name in files if name.endswith(ENDINGS) and not name.startswith(".")]
+        yield from _sound((Path(place, name) for name in named), problems)
+
+
+def _sound(files: Iterable[Path], problems: list[str]) -> Iterator[Path]:
+    """Yield files, but for folders; a dead link or a pipe is a problem."""
+    for file in files:
+        if not file.is_dir() and _is_sound(file, problems):
+            yield file
+
+
+def _is_sound(file: Path, problems: list[str]) -> bool:
+    try:
+        refuse_dead_link(file)
+        find_scenario(file)
+    except UserError as error:
+        problems += error.problems
+        return False
+    return True
 
 
 def refuse_dead_link(path: Path) -> None:

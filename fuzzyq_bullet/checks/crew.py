@@ -144,6 +144,8 @@ class Crew:
                 return
             if "unable" in answer:
                 raise UserError(*answer["unable"])
+            if "order" in answer and answer["order"] != worker.token:
+                return  # said twice, as by a copy of the process that a planner made
             if "ready" in answer:
                 worker.be_ready()
                 self._lost = 0
@@ -207,6 +209,7 @@ class _Worker:
         self._listener.start()
         self.ready = False
         self.order: int | None = None
+        self.token = ""
         self._writes: str | None = None
         self.since = time.monotonic()
         self.deadline = self.since + START_TIMEOUT
@@ -217,6 +220,7 @@ class _Worker:
     def give(self, index: int, order: dict[str, Any]) -> None:
         """Hand out an order; that nobody takes it is seen when listening."""
         self.order, self.since = index, time.monotonic()
+        self.token = order["order"] = secrets.token_hex(8)
         self.deadline = self.since + order["timeout"]
         self._writes = order["writes"]
         assert self._process.stdin is not None

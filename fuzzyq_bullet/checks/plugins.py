@@ -12,7 +12,7 @@ from contextlib import redirect_stdout
 from pathlib import Path
 from types import ModuleType
 
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.errors import Stopped, UserError
 from fuzzyq_bullet.wording import error_in_words
 
 
@@ -42,7 +42,9 @@ def _load(name: str) -> None:
         raise UserError(f"--plugin: {name} cannot be imported: KeyboardInterrupt") from error
     except SystemExit as error:
         raise UserError(f"--plugin: {name} cannot be imported: it tried to exit") from error
-    except Exception as error:  # whatever a user's module raises
+    except Stopped:
+        raise
+    except BaseException as error:  # whatever a user's module raises
         raise UserError(f"--plugin: {name} cannot be imported: {error_in_words(error)}") from error
 
 

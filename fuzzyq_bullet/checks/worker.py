@@ -81,13 +81,14 @@ def main(settings: dict[str, Any]) -> None:
         if "film" in order:
             try:
                 drive.make_film(FilmJob.model_validate(order["film"]))
-                answer(filmed=True)
+                answer(filmed=True, order=order["order"])
             except (UserError, MemoryError) as error:
-                answer(filmed=False, why=str(error) or "out of memory")
+                answer(filmed=False, why=str(error) or "out of memory", order=order["order"])
         else:
             job = Job.model_validate(order["job"])
             verdict = drive.drive(job)
-            answer(verdict=verdict.model_dump(mode="json"), retire=_resident() > RETIRE_AT * limit)
+            retire = _resident() > RETIRE_AT * limit
+            answer(verdict=verdict.model_dump(mode="json"), retire=retire, order=order["order"])
         _end_within(0)
 
 

@@ -66,9 +66,11 @@ def escape(
     from fuzzyq_bullet.experiments.escape.table import table_of
     from fuzzyq_bullet.experiments.sweep.run import sweep
     from fuzzyq_bullet.experiments.sweep.workers import Pool
+    from fuzzyq_bullet.outputs import plugin_settings
     from fuzzyq_bullet.version import __version__
 
     settings = {"sweep": "escape", "version": __version__, **plan.described()}
+    settings.update(plugin_settings(plugin or []))
     with sweep_bar() as progress:
         done = sweep(
             "escape",

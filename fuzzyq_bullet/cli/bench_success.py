@@ -65,9 +65,11 @@ def success(
     from fuzzyq_bullet.experiments.success.episode import run_row
     from fuzzyq_bullet.experiments.sweep.run import sweep
     from fuzzyq_bullet.files import writable_files, write_text
+    from fuzzyq_bullet.outputs import plugin_settings
     from fuzzyq_bullet.version import __version__
 
     settings = {"sweep": "success", "version": __version__, **described}
+    settings.update(plugin_settings(plugin or []))
     with pool_of(backend, scheduler, jobs, plugin or []) as pool:
         text, image = writable_files(out, ["success.json", "success.png"])
         with sweep_bar() as progress:

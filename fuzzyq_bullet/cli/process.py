@@ -12,7 +12,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, NoReturn
 
-from fuzzyq_bullet.errors import UserError, printable
+from fuzzyq_bullet.errors import Stopped, UserError, printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,20 +23,6 @@ _GRACE = 2.0
 """Time (s) in which nothing interrupts the tidying up after an interrupt, nor one an import."""
 _SOON = 0.02
 """Time (s) after which an interrupt is tried again that came at a bad time."""
-
-
-class Stopped(BaseException):
-    """A signal asked the process to end: Ctrl-C, ``kill``, or its terminal went away.
-
-    No ``KeyboardInterrupt``, of which libraries make what they like.
-
-    Attributes:
-        status: The exit code that shells use for it: 130 for Ctrl-C, 143 for SIGTERM.
-    """
-
-    def __init__(self, signum: int) -> None:
-        super().__init__(signum)
-        self.status = 128 + signum
 
 
 def guard(command: Callable[[], int]) -> NoReturn:

@@ -13,8 +13,7 @@ import typer
 
 from fuzzyq_bullet.cli.console import progress_bar, say
 from fuzzyq_bullet.cli.plugin import PluginOption
-from fuzzyq_bullet.cli.process import Stopped
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.errors import Stopped, UserError
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from numbers import Real
 from typing import Any
 
+import numpy as np
+
 from fuzzyq_bullet.planning.base import MODES, Decision
 from fuzzyq_bullet.wording import not_one_of, shorten
 
@@ -48,6 +50,8 @@ def checked(decision: Any) -> Decision:
         _within("reach", decision.reach, 0.0, FARTHEST, " or infinite")
     if not isinstance(decision.mode, str) or decision.mode not in MODES:
         raise DecisionError(f"decided the mode: {not_one_of('mode', decision.mode, MODES)}")
+    if not isinstance(decision.hopeless, bool | np.bool_):
+        raise DecisionError(f"decided hopeless {_shown(decision.hopeless)}, not True or False")
     for name in _NUMBERS:
         _explaining(name, getattr(decision, name))
     frozen: dict[str, Any] = {
@@ -59,7 +63,8 @@ def checked(decision: Any) -> Decision:
 
 
 def _within(name: str, value: Any, least: float, most: float, otherwise: str = "") -> None:
-    if not isinstance(value, Real) or not least <= float(value) <= most:  # nor is NaN
+    number = _number(value)
+    if number is None or not least <= number <= most:  # nor is NaN
         shown = _shown(value)
         raise DecisionError(
             f"decided the {name} {shown}, which must be from {least:g} to {most:g}{otherwise}"
@@ -72,11 +77,18 @@ def _explaining(name: str, value: Any) -> float:
     Raises:
         DecisionError: If it is no number, or absurd.
     """
-    if isinstance(value, Real):
-        number = float(value)
-        if abs(number) <= FARTHEST or not math.isfinite(number):
-            return number
+    number = _number(value)
+    if number is not None and (abs(number) <= FARTHEST or not math.isfinite(number)):
+        return number
     raise DecisionError(f"explained its decision by the {name} {_shown(value)}, which is no number")
+
+
+def _number(value: Any) -> float | None:
+    """Return a real number; None for what is none, or too large for one."""
+    try:
+        return float(value) if isinstance(value, Real) else None
+    except OverflowError:
+        return None
 
 
 def _row(name: str, values: Any, size: int) -> tuple[float, ...]:

@@ -24,7 +24,7 @@ from fuzzyq_bullet.scenario.problems import (
     problems_of,
 )
 from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
-from fuzzyq_bullet.wording import did_you_mean, shorten
+from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
 
 if TYPE_CHECKING:
     import os
@@ -87,7 +87,12 @@ def parse_scenario(
     except ValidationError as error:
         problems = problems_of(error, tree.data)
         more = max(0, error.error_count() - MAX_WORDED)
+    except Exception as error:  # of the settings of a planner of the user's own
+        line = tree.lines.get("planner", tree.line)
+        why = f"its settings cannot be made: {error_in_words(error)}"
+        raise UserError(f"{where}:{line}: planner: {why}") from error
     else:
+        _refuse_unwritable(scenario, f"{where}:{tree.lines.get('planner', tree.line)}")
         if folder is not None:
             scenario = with_policy_in(scenario, folder)
         problems = [Problem(loc, message) for loc, message in find_conflicts(scenario)]
@@ -97,6 +102,20 @@ def parse_scenario(
         if not problems:
             return scenario
     raise UserError(*_lines(problems, more, tree, where))
+
+
+def _refuse_unwritable(scenario: Scenario, where: str) -> None:
+    """Make sure that the settings of a planner of the user's own can be put on record.
+
+    Raises:
+        UserError: If they cannot.
+    """
+    try:
+        scenario.planner.model_dump(mode="json")
+    except Exception as error:
+        raise UserError(
+            f"{where}: planner: its settings cannot be written as JSON: {error_in_words(error)}"
+        ) from error
 
 
 def find_scenario(source: Source) -> Path:
