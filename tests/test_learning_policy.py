@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import time
 from pathlib import Path
 from typing import Any
 
@@ -280,9 +279,7 @@ BAD_FILES: dict[str, tuple[str | bytes, str]] = {
 def test_a_bad_file_is_refused_in_a_line(
     tmp_path: Path, content: str | bytes, complaint: str
 ) -> None:
-    start = time.perf_counter()
     assert complaint in refusal(tmp_path / "policy.json", content)
-    assert time.perf_counter() - start < 3.0
 
 
 def test_what_is_no_file_is_refused(tmp_path: Path) -> None:
