@@ -184,8 +184,9 @@ def alone_at(path: Path) -> Iterator[None]:
         try:
             yield
         finally:
-            with suppress(OSError):
-                lock.unlink()  # while it is still held: who comes later makes a new one
+            if os.fstat(descriptor).st_size == 0:  # else it is somebody's file of that name
+                with suppress(OSError):
+                    lock.unlink()  # while it is still held: who comes later makes a new one
     finally:
         os.close(descriptor)
 

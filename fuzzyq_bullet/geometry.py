@@ -176,6 +176,49 @@ class Field:
                 np.minimum(least, self._to_obstacles(here, self._near(here)).min(1), out=least)
         return result
 
+    def clearance_on_ways(self, starts: ArrayLike, ends: ArrayLike) -> tuple[Floats, Floats]:
+        """Return the least distance on each straight way, and the place on it where that is.
+
+        Args:
+            starts: Shape (K, 2), in metres.
+            ends: Shape (K, 2), in metres. No way may lead into a box and
+                out again.
+
+        Returns:
+            Signed distances (m), shape (K,), as of ``clearance``, and places (m), shape (K, 2).
+        """
+        a = np.asarray(starts, dtype=np.float64).reshape(-1, 2)
+        b = np.asarray(ends, dtype=np.float64).reshape(-1, 2)
+        at_start, least = self.clearance(a), self.clearance(b)
+        places = np.where((at_start <= least)[:, None], a, b)
+        np.minimum(least, at_start, out=least)
+        # A flat face is nearest to an end of a way: between them only what is round can be nearer.
+        centres, radii = self._round_parts()
+        rows = max(1, _CHUNK // max(1, len(radii)))
+        for k in range(0, len(a) if len(radii) else 0, rows):
+            start, way = a[k : k + rows, None], (b - a)[k : k + rows, None]
+            length_squared = np.maximum((way**2).sum(2), 1e-300)
+            along = ((centres - start) * way).sum(2) / length_squared
+            foot = start + np.minimum(np.maximum(along, 0.0), 1.0)[:, :, None] * way
+            apart = np.sqrt(((centres - foot) ** 2).sum(2)) - radii
+            which = apart.argmin(1)[:, None]
+            nearest = np.take_along_axis(apart, which, 1)[:, 0]
+            nearer = nearest < least[k : k + rows]
+            least[k : k + rows][nearer] = nearest[nearer]
+            feet = np.take_along_axis(foot, which[:, :, None], 1)[:, 0]
+            places[k : k + rows][nearer] = feet[nearer]
+        return least, places
+
+    def _round_parts(self) -> tuple[Floats, Floats]:
+        """Return cylinders and the corners of boxes: centres (m), shape (P, 2), and radii (m)."""
+        x, y, half_x, half_y, cos, sin = self._boxes
+        signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+        own_x, own_y = half_x * signs[:, :1], half_y * signs[:, 1:]
+        corners = np.stack([x + cos * own_x - sin * own_y, y + sin * own_x + cos * own_y], axis=2)
+        corners = corners.reshape(-1, 2)
+        radii = np.concatenate([self._cylinders[2], np.zeros(len(corners))])
+        return np.vstack([self._cylinders[:2].T, corners]), radii
+
     def around(
         self, x: float, y: float, reach: float
     ) -> tuple[list[tuple[float, list[float]]], float]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+import threading
+import time
 from contextlib import suppress
-from importlib.metadata import PackageNotFoundError, version
 
 
 def cores() -> int:
@@ -16,7 +17,20 @@ def cores() -> int:
 
 def pybullet_in_words() -> str:
     """Return the distribution that PyBullet comes from here, and its version."""
+    from importlib.metadata import PackageNotFoundError, version  # which takes long to load
+
     for package in ("pybullet", "pybullet-arm64"):
         with suppress(PackageNotFoundError):
             return f"{package} {version(package)}"
     return "pybullet"
+
+
+def end_with(parent: int) -> None:
+    """End this process when its parent ends, even by ``kill -9``."""
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, name="watch-parent", daemon=True).start()

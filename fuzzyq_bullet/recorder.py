@@ -53,7 +53,7 @@ def recorded(
             speed=ticks[:, 4],
             turn_rate=ticks[:, 5],
             wheel_speeds=ticks[:, 6:8],
-            clearance=field.clearance(ticks[:, 1:3]) - ROBOT_RADIUS,
+            clearance=_clearance(field, ticks[:, 1:3], scenario.drive) - ROBOT_RADIUS,
         ),
         decisions=Decisions(
             tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
@@ -77,6 +77,16 @@ def recorded(
         ),
         version=__version__,
     )
+
+
+def _clearance(field: Field, positions: Floats, drive: str) -> Floats:
+    """Return how far everything is from the robot's centre (m), shape (T,).
+
+    The point robot's moves may be long: what counts is the least on the way to each tick.
+    """
+    if drive == "kinematic":
+        return field.clearance_on_ways(positions[[0, *range(len(positions) - 1)]], positions)[0]
+    return field.clearance(positions)
 
 
 def _array(rows: Iterable[Any], *shape: int) -> Floats:

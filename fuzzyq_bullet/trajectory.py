@@ -46,7 +46,8 @@ class Ticks:
         turn_rate: Turn rate (rad/s), shape (T,).
         wheel_speeds: Speeds of the left and right wheel (rad/s), shape (T, 2).
         clearance: Distance to the nearest obstacle or wall (m), shape (T,); negative where the two
-            overlap, inf when there is none.
+            overlap, inf when there is none. In the kinematic drive, whose moves may be long, the
+            least since the tick before.
     """
 
     time: Floats

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import signal
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -48,3 +49,19 @@ def error_in_words(error: BaseException) -> str:
     except Exception:  # even its words may fail
         message = ""
     return type(error).__name__ + (f": {message}" if message else "")
+
+
+def end_in_words(code: int) -> str:
+    """Say how a process ended.
+
+    Args:
+        code: Its exit code; negative for the signal that ended it.
+    """
+    if code >= 0:
+        return f"its process ended by itself, with exit code {code}"
+    known = {one.value: one.name for one in signal.Signals}
+    name = known.get(-code, f"signal {-code}")
+    why = (signal.strsignal(-code) or "").lower()
+    if known.get(-code) == "SIGKILL":
+        why = "killed from outside: the machine is out of memory, or somebody ended it"
+    return f"its process crashed: {name} ({why})"

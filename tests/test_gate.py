@@ -9,11 +9,13 @@ from __future__ import annotations
 import json
 import math
 import os
+import signal
+import subprocess
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
-from conftest import Call
+from conftest import FUZZYQ, Call
 
 from fuzzyq_bullet import Decision, Scenario, run
 from fuzzyq_bullet.errors import PlannerError
@@ -179,7 +181,71 @@ def test_whole_numbers_and_those_of_numpy_are_numbers() -> None:
         checked(Decision(heading=np.zeros(2), step=1))
 
 
+JUMP = """\
+name: jump
+start: {position: [2, 5]}
+goal: {position: [22, 5]}
+arena: {size: [40, 10]}
+drive: kinematic
+obstacles: [{shape: cylinder, position: [9, 5.45], radius: 0.2}]
+"""
+
+
+def test_a_jump_is_as_near_to_things_as_its_whole_way() -> None:
+    class Jumper:
+        def decide(self, observation: object) -> Decision:
+            return Decision(heading=0.0, step=20.0)
+
+    from fuzzyq_bullet.episode import run_in
+    from fuzzyq_bullet.physics.sight import Sight
+
+    scenario = parse_scenario(JUMP)
+    with Sight(scenario.obstacles, scenario.arena) as world:
+        result = result_of(run_in(world, scenario, Jumper()))  # type: ignore[arg-type]
+    assert (result.outcome, result.steps, result.min_clearance_m) == ("goal", 1, 0.05)
+    assert missed(Expect(min_clearance=0.06), result)
+
+
+def test_a_planner_that_ends_the_process_of_a_run_is_no_success(
+    fuzzyq: Call, tmp_path: Path
+) -> None:
+    path = written(tmp_path, "dies")
+    done = fuzzyq("run", path, "--plugin", PLUGIN, "--json", "--out", tmp_path / "out")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
+        "error: nothing came of it: its process ended by itself, with exit code 0\n"
+    )
+
+
 # Plugins
+
+
+@pytest.mark.parametrize(
+    ("at_end", "more", "status"), [("", "", 0), ("os._exit, 0", "expect: {max_time: 1}", 1)]
+)
+def test_what_a_plugin_does_at_the_end_changes_no_verdict(
+    at_end: str, more: str, status: int, fuzzyq: Call, tmp_path: Path
+) -> None:
+    (tmp_path / "p.py").write_text(f"import atexit, os\natexit.register({at_end or 'print'})\n")
+    (tmp_path / "s.yaml").write_text(SIMPLE + more)
+    done = fuzzyq("check", "s.yaml", "--plugin", "p.py", cwd=tmp_path)
+    assert done.returncode == status
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="Windows has other signals")
+def test_an_interrupt_reaches_a_command_with_plugins(tmp_path: Path) -> None:
+    (tmp_path / "p.py").write_text("import time\nprint('loading', flush=True)\ntime.sleep(60)\n")
+    process = subprocess.Popen(
+        [FUZZYQ, "run", "boxes", "--plugin", "p.py"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr is not None
+    assert process.stderr.readline() == "loading\n"
+    process.send_signal(signal.SIGTERM)
+    assert process.communicate()[1] == "error: interrupted\n"
+    assert process.returncode == 143
 
 
 @pytest.mark.parametrize(

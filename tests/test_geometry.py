@@ -77,6 +77,37 @@ def test_clearance_is_the_least_signed_distance_to_anything(cylinders, boxes, ar
     np.testing.assert_allclose(got, want, atol=1e-9)
 
 
+@given(
+    st.lists(cylinder, max_size=4),
+    st.lists(box, max_size=4),
+    st.sampled_from([None, ARENA]),
+    st.tuples(coordinate, coordinate),
+    st.tuples(coordinate, coordinate),
+)
+def test_the_least_clearance_on_a_way_is_the_least_of_all_its_points(
+    cylinders, boxes, arena, start, end
+):
+    field = make(cylinders, boxes, arena)
+    points = np.linspace(start, end, 400)
+    apart = math.dist(start, end) / 399
+    sampled = field.clearance(points).min()
+    assume(field.clearance(points).max() > 0 and (sampled > 0 or not boxes))
+    [least], [place] = field.clearance_on_ways([start], [end])
+    assert math.isclose(least, field.clearance([place])[0], abs_tol=1e-9)
+    assert sampled - apart / 2 - 1e-9 <= least <= sampled + 1e-9
+
+
+def test_many_ways_have_the_clearances_that_each_has_alone(monkeypatch):
+    rng = np.random.default_rng(5)
+    field = make(rng.uniform(0.1, 3.0, (7, 3)), rng.uniform(0.1, 3.0, (5, 5)), ARENA)
+    a, b = rng.uniform(-9.0, 9.0, (2, 60, 2))
+    alone = [field.clearance_on_ways(p, q) for p, q in zip(a, b, strict=True)]
+    monkeypatch.setattr("fuzzyq_bullet.geometry._CHUNK", 100)
+    least, places = field.clearance_on_ways(a, b)
+    np.testing.assert_array_equal(least, [one[0][0] for one in alone])
+    np.testing.assert_array_equal(places, [one[1][0] for one in alone])
+
+
 def test_clearance_of_many_points_does_not_depend_on_how_they_are_cut_up(monkeypatch):
     rng = np.random.default_rng(1)
     field = make(rng.uniform(0.1, 5, (7, 3)), rng.uniform(0.1, 5, (3, 5)), ARENA)

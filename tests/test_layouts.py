@@ -251,7 +251,7 @@ def test_rectangles_overlap_only_where_they_may(turned):
         {"shape": "box", "position": [5.0, 8.5], "size": [3.0, 0.5], "yaw": 0.3},
     )
     drawn = realise(asked("rectangles", obstacles=listed, count=40, overlap=False, turned=turned))
-    points = np.random.default_rng(0).uniform(0, 10, (20_000, 2))
+    points = np.random.default_rng(0).uniform(0, 10, (4000, 2))
     inside = np.array([Field.of([item]).clearance(points) < 0.0 for item in drawn.obstacles])
     assert inside.sum(axis=0).max() == 1
     crowd = realise(asked("rectangles", count=40, turned=turned))

@@ -23,6 +23,7 @@ from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
 from fuzzyq_bullet.checks.worker import COMMAND
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import remove_parts
+from fuzzyq_bullet.wording import end_in_words
 
 FILM_TIMEOUT = 900.0
 """Wall-clock time (s) that one film may take."""
@@ -234,7 +235,7 @@ class _Worker:
         with suppress(ValueError):  # what it said as it was ended
             for line in self._process.stdout:
                 answers.put((self, json.loads(line)))
-        answers.put((self, {"died": _end_in_words(self._process.wait())}))
+        answers.put((self, {"died": end_in_words(self._process.wait())}))
 
     def end(self) -> None:
         """End the process and all that it started."""
@@ -251,18 +252,6 @@ class _Worker:
                 pipe.close()
         if self._writes is not None:
             remove_parts(Path(self._writes), self._name)
-
-
-def _end_in_words(code: int) -> str:
-    """Say how a process ended."""
-    if code >= 0:
-        return f"its process ended by itself, with exit code {code}"
-    known = {one.value: one.name for one in signal.Signals}
-    name = known.get(-code, f"signal {-code}")
-    why = (signal.strsignal(-code) or "").lower()
-    if known.get(-code) == "SIGKILL":
-        why = "killed from outside: the machine is out of memory, or somebody ended it"
-    return f"its process crashed: {name} ({why})"
 
 
 def _broken(job: Job, why: str) -> Verdict:

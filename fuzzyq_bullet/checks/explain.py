@@ -58,9 +58,13 @@ def touched(trajectory: Trajectory, source: Source) -> Touch | None:
 def nearest(trajectory: Trajectory, source: Source) -> Touch:
     """Return what the robot came nearest to."""
     scenario, ticks = trajectory.scenario, trajectory.ticks
+    field = Field.of(scenario.obstacles, scenario.arena)
     i = int(np.argmin(ticks.clearance))
-    x, y = (float(value) for value in ticks.position[i])
-    closest, _ = Field.of(scenario.obstacles, scenario.arena).nearest((x, y))
+    x, y = ticks.position[i].tolist()
+    if scenario.drive == "kinematic" and i:  # somewhere on the way to that tick
+        _, places = field.clearance_on_ways(ticks.position[i - 1], ticks.position[i])
+        x, y = places[0].tolist()
+    closest, _ = field.nearest((x, y))
     return Touch(
         what=name_of(scenario, closest, source.listed),
         obstacle=closest,

@@ -10,9 +10,9 @@ import json
 import os
 import signal
 import sys
-import threading
-import time
 from typing import Any
+
+from fuzzyq_bullet.platforms import end_with
 
 try:
     import resource
@@ -45,7 +45,7 @@ def main(settings: dict[str, Any]) -> None:
     # What planners and libraries print must not get between the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
-    _end_with(settings["parent"])
+    end_with(settings["parent"])
     # No terminal's Ctrl-C comes here, so a KeyboardInterrupt is always a planner's own.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     limit = int(settings["memory_mb"]) * 2**20
@@ -106,14 +106,3 @@ def _resident() -> int:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except OSError:
         return 0
-
-
-def _end_with(parent: int) -> None:
-    """End this process when its parent ends, even by ``kill -9``."""
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(0.5)
-        os._exit(1)
-
-    threading.Thread(target=watch, name="watch-parent", daemon=True).start()

@@ -61,16 +61,18 @@ def steps(
     given = None if pair is None else _pair_of(pair)
 
     from fuzzyq_bullet.files import writable_files, write_text
+    from fuzzyq_bullet.outputs import plugin_settings
 
+    plugins = plugin_settings(plugin or [])
     with pool_of(backend, scheduler, jobs, plugin or []) as pool:
         (text,) = writable_files(out, ["steps.json"])
-        best, searched = (given, None) if given else _search(moved_by, grid, out, pool)
+        best, searched = (given, None) if given else _search(moved_by, grid, out, plugins, pool)
 
         from fuzzyq_bullet.experiments.steps.plan import contenders, roles
         from fuzzyq_bullet.experiments.success.plan import M_S, Plan
 
         plan = Plan(contenders(best), moved_by, (count,), runs, seed)
-        rows = _swept("steps", plan.jobs(), plan.described(), out / "table", pool)
+        rows = _swept("steps", plan.jobs(), plan.described() | plugins, out / "table", pool)
 
     import numpy as np
 
@@ -120,7 +122,9 @@ def _pair_of(text: str) -> Weights:
     return Weights(*settings.weights, USUAL_BREAKOUT)
 
 
-def _search(drive: Drive, grid: int, out: Path, pool: Pool) -> tuple[Weights, dict[str, Any]]:
+def _search(
+    drive: Drive, grid: int, out: Path, plugins: dict[str, Any], pool: Pool
+) -> tuple[Weights, dict[str, Any]]:
     """Find the best fixed pair on environments of the training, never on those of the table."""
     from fuzzyq_bullet.cli.console import say
     from fuzzyq_bullet.experiments.learning_gain.candidates import PAIRS, words_of
@@ -131,7 +135,7 @@ def _search(drive: Drive, grid: int, out: Path, pool: Pool) -> tuple[Weights, di
 
     learned = policy_of(learned_settings(None), EXPECTED)
     search = Search(drive, learned.seed, grid, PAIRS)
-    rows = _swept("grid", search.jobs(), search.described(), out / "grid", pool)
+    rows = _swept("grid", search.jobs(), search.described() | plugins, out / "grid", pool)
     best = best_of(rows, PAIRS).best
     say(f"best pair on the training's environments: {words_of(best)}")
     return best, search.described()

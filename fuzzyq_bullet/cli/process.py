@@ -12,6 +12,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, NoReturn
 
+from fuzzyq_bullet.cli import supervisor
 from fuzzyq_bullet.errors import Stopped, UserError, printable
 
 if TYPE_CHECKING:
@@ -29,8 +30,10 @@ def guard(command: Callable[[], int]) -> NoReturn:
     """Run a command and exit with what it returns, whatever happens to the process meanwhile.
 
     A signal ends it in good order: everything half-written is removed, nobody sees a traceback.
-    Its output may end in a pipe that closes early, which changes nothing about the verdict.
+    Its output may end in a pipe that closes early, which changes nothing about the verdict. A
+    user's own code runs in a second process, so that what that does to it is no verdict either.
     """
+    report = supervisor.supervise(_SIGNALS, _lost) if supervisor.wanted() else None
     try:
         _catch_signals()
         _set_up_streams()
@@ -40,7 +43,14 @@ def guard(command: Callable[[], int]) -> NoReturn:
         _ignore_signals()
         say_error("interrupted")
         status = stopped.status
+    if report is not None:
+        report(status)
     sys.exit(status)
+
+
+def _lost(how: str) -> int:
+    say_error(f"nothing came of it: {how}")
+    return BAD_INPUT
 
 
 def _status_of(command: Callable[[], int]) -> int:

@@ -66,6 +66,7 @@ class Trap(Layout):
         start, goal = scenario.start.position, scenario.goal.position
         reach = math.dist(start, goal)
         room = MAX_OBSTACLES - len(scenario.obstacles)
+        refused: set[tuple[Obstacle, ...]] = set()
         for attempt in range(_ATTEMPTS):
             x, y = self._middle(start, goal, rng)
             turn = self._opening((x, y), start, rng)
@@ -73,12 +74,15 @@ class Trap(Layout):
             if len(parts) > room:
                 break
             placed = tuple(_moved(part, x, y, turn) for part in parts)
+            if placed in refused:  # nothing of it is drawn
+                continue
             if (
                 all(is_inside(part, scenario.arena.size) for part in placed)
                 and is_clear(scenario, placed, self.margin)
                 and leaves_a_way(scenario, placed)
             ):
                 return placed
+            refused.add(placed)
         width, depth = scenario.arena.size
         raise UserError(
             f"{scenario.name}: random.layout: cannot place {self.layout} within {width:g} × "
