@@ -1,0 +1,82 @@
+"""What a run comes to, to the last bit, is what it was: a rebuilt house changes nothing for users.
+
+A change of behaviour that is meant is recorded anew, and CHANGELOG.md tells of it::
+
+    python tests/test_unchanged.py
+
+Only Linux on x86-64 is compared: elsewhere the last bit of a sine may differ.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from fuzzyq_bullet import Scenario, load_scenario, result_of, run, with_options
+from fuzzyq_bullet.cli import app
+from fuzzyq_bullet.scenario import bundled_scenarios, random_task
+
+KNOWN = Path(__file__).with_name("unchanged.json")
+KINDS = [
+    (planner, drive)
+    for planner in ("improved-fuzzy", "fuzzy-q-lambda", "fuzzy")
+    for drive in ("wheels", "kinematic")
+]
+TRAIN = ("train", "fuzzy-q-lambda", "--episodes", "5", "--seed", "3", "--out", "policy.json")
+SWEEP = ("bench", "success", "--counts", "10,40", "--runs", "2", "--jobs", "1", "--out", "sweep")
+
+
+def task(number: int) -> Scenario:
+    """Return one of 20 random tasks; every planner has its turn, in both drives."""
+    planner, drive = KINDS[number % len(KINDS)]
+    if number % 4 == 3:
+        drawn = random_task(7000 + number, count=None, layout=("arc", "u-shape")[number // 4 % 2])
+    else:
+        layout = "rectangles" if number % 4 == 2 else "scatter"
+        drawn = random_task(7000 + number, count=30 + 10 * (number % 3), layout=layout)
+    return with_options(drawn, planner=planner, drive=drive)
+
+
+def bytes_of(command: tuple[str, ...], file: str) -> bytes:
+    """Return a file that a command writes in a folder of its own."""
+    with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setattr(sys, "argv", ["fuzzyq", *command])
+        app.call()
+        return Path(file).read_bytes()
+
+
+def digest(scenario: Scenario) -> str:
+    result = result_of(run(scenario))
+    return f"{result.outcome} {result.digest}"
+
+
+def sha(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:32]
+
+
+CASES: dict[str, Callable[[], str]] = {
+    **{name: lambda name=name: digest(load_scenario(name)) for name in bundled_scenarios()},
+    **{f"task {number}": lambda number=number: digest(task(number)) for number in range(20)},
+    "train": lambda: sha(bytes_of(TRAIN, "policy.json")),
+    "sweep": lambda: sha(bytes_of(SWEEP, "sweep/success.csv")),
+}
+
+
+@pytest.mark.skipif(
+    (sys.platform, platform.machine()) != ("linux", "x86_64"), reason="sines differ elsewhere"
+)
+@pytest.mark.parametrize("case", CASES)
+def test_it_comes_to_the_same_as_ever(case: str) -> None:
+    assert CASES[case]() == json.loads(KNOWN.read_text())[case]
+
+
+if __name__ == "__main__":
+    KNOWN.write_text(json.dumps({name: case() for name, case in CASES.items()}, indent=1) + "\n")
