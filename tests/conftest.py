@@ -16,7 +16,7 @@ import pytest
 from fuzzyq_bullet.cli import app
 
 # How long an example takes is the machine's affair: no test asserts a time.
-hypothesis.settings.register_profile("fuzzyq", deadline=None)
+hypothesis.settings.register_profile("fuzzyq", deadline=None, max_examples=50)
 hypothesis.settings.load_profile("fuzzyq")
 
 SLOW = (

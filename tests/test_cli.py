@@ -181,9 +181,9 @@ def test_a_missed_expectation_is_exit_code_1_with_everything_written(
 
 
 def test_validate_accepts_files_and_bundled_names_and_tells_every_mistake(
-    fuzzyq: Call, short: Path, tmp_path: Path
+    fuzzyq: Call, inside: Call, short: Path, tmp_path: Path
 ) -> None:
-    done = fuzzyq("validate", short, "mixed")
+    done = inside("validate", short, "mixed")
     assert (done.returncode, done.stdout) == (0, "")
     assert done.stderr == f"{short}: ok\nmixed: ok\n"
     wrong = tmp_path / "wrong.yaml"
@@ -201,10 +201,11 @@ def test_validate_accepts_files_and_bundled_names_and_tells_every_mistake(
 def test_schema_is_one_that_the_bundled_scenarios_fulfil(fuzzyq: Call) -> None:
     schema = json.loads(fuzzyq("schema").stdout)
     jsonschema.Draft202012Validator.check_schema(schema)
+    validator = jsonschema.Draft202012Validator(schema)
     from fuzzyq_bullet.resources import data_folder
 
     for path in data_folder("scenarios").glob("*.yaml"):
-        jsonschema.validate(yaml.safe_load(path.read_text()), schema)
+        validator.validate(yaml.safe_load(path.read_text()))
 
 
 def test_list_names_every_bundled_scenario(inside: Call) -> None:
@@ -252,12 +253,12 @@ def test_numpy_is_not_loaded_for_help_nor_scipy_to_know_what_a_scenario_is() -> 
 def test_an_output_that_nobody_reads_to_its_end_changes_nothing(
     short: Path, tmp_path: Path
 ) -> None:
-    for redirection in ("| true", "2>&1 >/dev/null | true", ">&- 2>&-"):
-        run = f'"$0" run "$1" --no-video --json --out "$2" {redirection}'
-        script = f'{run}; echo "${{PIPESTATUS[0]}}"'
-        command = ["bash", "-c", script, str(FUZZYQ), str(short), str(tmp_path)]
+    run = f"run {short} --no-video --json --out {tmp_path}"
+    for call in (f"{run} | true", "validate mixed 2>&1 >/dev/null | true", f"{run} >&- 2>&-"):
+        script = f'"$0" {call}; echo "${{PIPESTATUS[0]}}"'
+        command = ["bash", "-c", script, str(FUZZYQ)]
         done = subprocess.run(command, capture_output=True, text=True)
-        assert done.stdout == "0\n", redirection
+        assert done.stdout == "0\n", call
         assert "rror" not in done.stderr
 
 

@@ -61,13 +61,16 @@ def maps(process: subprocess.Popen[str], library: str) -> bool:
         return False
 
 
-BOTH = pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
-
-
-@BOTH
-@pytest.mark.parametrize("library", ["_pydantic_core", "_multiarray_umath", "pybullet"])
+@pytest.mark.parametrize(
+    ("library", "signum"),
+    [
+        ("_pydantic_core", signal.SIGINT),
+        ("_multiarray_umath", signal.SIGTERM),
+        ("pybullet", signal.SIGINT),
+    ],
+)
 def test_while_libraries_are_loaded(
-    signum: signal.Signals, library: str, short: Path, tmp_path: Path
+    library: str, signum: signal.Signals, short: Path, tmp_path: Path
 ) -> None:
     process = start("run", short, "--out", tmp_path / "out", "--no-video")
     wait_for(lambda: maps(process, library), process)
@@ -75,9 +78,8 @@ def test_while_libraries_are_loaded(
     assert not [*tmp_path.rglob("*.part")]
 
 
-@BOTH
 def test_while_a_module_is_loaded_that_makes_another_error_of_it(
-    signum: signal.Signals, short: Path, tmp_path: Path
+    short: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "slow.py").write_text(
         "import pathlib, time\n"
@@ -86,10 +88,10 @@ def test_while_a_module_is_loaded_that_makes_another_error_of_it(
     )
     process = start("check", short, "--plugin", tmp_path / "slow.py")
     wait_for((tmp_path / "begun").exists, process)
-    ends(process, signum)
+    ends(process, signal.SIGINT)
 
 
-@BOTH
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
 def test_while_driving(signum: signal.Signals, long: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     process = start("run", long, "--out", out, "--json")
@@ -99,8 +101,7 @@ def test_while_driving(signum: signal.Signals, long: Path, tmp_path: Path) -> No
     assert not list(out.iterdir())
 
 
-@BOTH
-def test_while_filming(signum: signal.Signals, filmed: Path, tmp_path: Path) -> None:
+def test_while_filming(filmed: Path, tmp_path: Path) -> None:
     record, video = tmp_path / "short.npz", tmp_path / "short-0.1x.mp4"
     record.write_bytes((filmed / "short.npz").read_bytes())
     video.write_bytes(OLD)
@@ -110,13 +111,13 @@ def test_while_filming(signum: signal.Signals, filmed: Path, tmp_path: Path) -> 
         return any(path.stat().st_size > 0 for path in tmp_path.glob(".*.part/*"))
 
     wait_for(half_written, process)
-    ends(process, signum)
+    ends(process, signal.SIGTERM)
     assert video.read_bytes() == OLD
     assert sorted(path.name for path in tmp_path.iterdir()) == ["short-0.1x.mp4", "short.npz"]
     assert not encoders_of(tmp_path)
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.005, 0.01, 0.02, 0.04])
+@pytest.mark.parametrize("delay", [0.0, 0.01, 0.04])
 def test_while_the_encoder_starts(delay: float, filmed: Path, tmp_path: Path) -> None:
     record = tmp_path / "short.npz"
     record.write_bytes((filmed / "short.npz").read_bytes())

@@ -87,24 +87,24 @@ def test_degrees_that_no_angle_can_be_are_refused_as_such(tmp_path: Path) -> Non
         warnings_of(HEAD.replace("5.0]}\ngoal", "5.0], heading: 180}\ngoal"), tmp_path)
 
 
-def test_all_commands_tell(fuzzyq: Call, tmp_path: Path) -> None:
+def test_all_commands_tell(inside: Call, tmp_path: Path) -> None:
     path = tmp_path / "s.yaml"
     path.write_text(HEAD + WALL + "limits: {time: 0.5}\n")
     for command in (("validate",), ("run", "--no-video", "--out", tmp_path / "o"), ("check",)):
-        done = fuzzyq(command[0], path, *command[1:])
+        done = inside(command[0], path, *command[1:])
         said = done.stdout + done.stderr
         assert "there is no way from the start to the goal" in said
         assert "0.5 s is too short" in said
         assert done.returncode == (0 if command == ("validate",) else 1)
-    lines = fuzzyq("check", path).stdout.splitlines()
+        lines = done.stdout.splitlines()
     assert "no way" in lines[1]
     assert lines[2].strip() == "outcome timeout, expected goal"
     assert sum("no way" in line for line in lines) == 1
 
 
-def test_github_is_told_at_the_line(fuzzyq: Call, tmp_path: Path) -> None:
+def test_github_is_told_at_the_line(inside: Call, tmp_path: Path) -> None:
     path = tmp_path / "s.yaml"
     path.write_text(HEAD.replace("5.0]}\ngoal", "5.0], heading: 90}\ngoal"))
-    done = fuzzyq("check", path, "--github", "--drive", "kinematic")
+    done = inside("check", path, "--github", "--drive", "kinematic")
     (line,) = [line for line in done.stdout.splitlines() if line.startswith("::warning")]
     assert ",line=2," in line

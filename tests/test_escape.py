@@ -91,7 +91,7 @@ def test_where_there_is_no_way_it_ends_without_a_touch(drive):
         box(7.0, 2.8, 2.0, 0.2),
         box(5.9, 4.0, 0.2, 2.6),
     )
-    trajectory = run(task(prison, drive=drive))
+    trajectory = run(task(prison, drive=drive, time=40.0))
     assert trajectory.outcome in {"stuck", "timeout"}
     assert trajectory.collision is None
 

@@ -11,6 +11,7 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from PIL import Image
+from test_unchanged import SAME_SINES, known, told
 
 from fuzzyq_bullet import load_scenario, result_of, run, with_options
 from fuzzyq_bullet.cli.figure import figure
@@ -82,6 +83,7 @@ def test_every_panel_of_a_figure_ends_as_its_scenario_promises(
         assert one.outcome == one.scenario.expect.outcome == FAILURES.get(name, "goal"), name
         assert (one.collision is None) == (one.outcome != "collision")
         assert one.ticks.time[-1] < 90.0
+        assert not SAME_SINES or told(one) == known(name)
 
 
 def test_the_figures_are_registered_and_their_scenarios_listed() -> None:

@@ -68,7 +68,7 @@ def extent_of(item) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("layout", ALL)
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(seeds, st.booleans(), st.sampled_from([(9.0, 5.0), (9.0, 9.2), (5.0, 9.0), (1.2, 0.6)]))
 def test_all_is_clear_of_start_and_goal_and_can_be_run(layout, seed, walls, goal):
     start = (1.0, 5.0) if goal[0] > 2 else (8.8, 9.0)
@@ -90,7 +90,7 @@ def test_all_is_clear_of_start_and_goal_and_can_be_run(layout, seed, walls, goal
 
 @pytest.mark.parametrize("layout", [*TRAPS, "rectangles", "scatter"])
 def test_every_obstacle_is_wholly_within_the_arena(layout):
-    for seed in range(15):
+    for seed in range(8):
         for item in realise(asked(layout, turned=True) if layout == "rectangles" else
                             asked(layout), seed).obstacles:  # fmt: skip
             low, high = extent_of(item)
@@ -102,7 +102,7 @@ def test_every_obstacle_is_wholly_within_the_arena(layout):
 def test_the_same_seed_gives_the_same_and_another_seed_something_else(layout):
     scenario = asked(layout)
     assert realise(scenario, 3) == realise(scenario, 3)
-    assert len({realise(scenario, seed).obstacles for seed in range(5)}) == 5
+    assert len({realise(scenario, seed).obstacles for seed in range(3)}) == 3
 
 
 @pytest.mark.parametrize("layout", ALL)
@@ -138,7 +138,7 @@ def middle_and_opening(drawn):
 @pytest.mark.parametrize("layout", TRAPS)
 def test_a_trap_stands_in_the_way_between_start_and_goal(layout):
     lengths = []
-    for seed in range(12):
+    for seed in range(8):
         drawn = realise(asked(layout), seed)
         route = shortest_path(drawn)
         assert route is not None
@@ -149,7 +149,7 @@ def test_a_trap_stands_in_the_way_between_start_and_goal(layout):
     assert max(lengths) > 8.4
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(seeds)
 def test_a_semicircle_opens_towards_the_start_and_has_no_holes(seed):
     drawn = realise(asked("semicircle"), seed)
@@ -203,7 +203,10 @@ def test_the_start_may_be_inside_the_trap():
         ("long-wall", {"position": [5.0, 5.0], "direction": 0.0, "length": 9.9}),  # no way round
         ("long-wall", {"length": 30.0}),
         ("u-shape", {"margin": 8.0}),
-        ("arc", {"position": [1.0, 5.0], "radius": 0.8, "angle": 5.5, "margin": 0.0}),  # shut in
+        (
+            "arc",
+            {"position": [1.0, 5.0], "radius": 0.8, "angle": 5.5, "direction": 0.0, "margin": 0.0},
+        ),  # shut in
         ("semicircle", {"radius": 450.0, "thickness": 0.05}),  # more than a scenario may have
     ],
 )
@@ -220,7 +223,7 @@ def test_a_trap_stays_where_listed_obstacles_leave_a_way():
         {"shape": "box", "position": [5.0, 2.5], "size": [0.2, 5.0]},
         {"shape": "box", "position": [5.0, 8.5], "size": [0.2, 3.0]},
     ]
-    for seed in range(5):
+    for seed in range(3):
         assert feasible(realise(asked("long-wall", obstacles=barrier, length=3.0), seed))
     shut = asked("long-wall", obstacles=barrier, position=[5.0, 6.0], direction=0.0, length=1.5)
     with pytest.raises(UserError, match="way round"):
@@ -295,7 +298,7 @@ def test_walls_in_line_are_one():
 
 
 def test_the_corridors_of_a_maze_are_as_wide_as_asked_for():
-    for seed in range(4):
+    for seed in range(2):
         narrow = realise(asked("maze", corridor=0.7, loops=0.0, margin=0.0), seed)
         assert feasible(narrow, 0.35 - 1e-3)
         tight = realise(asked("maze", corridor=0.5), seed)
@@ -317,7 +320,7 @@ def test_loops_make_a_maze_shorter_until_nothing_is_left():
 
 def test_a_maze_among_listed_obstacles_leaves_a_way_or_says_so():
     pillar = {"shape": "cylinder", "position": [5.0, 5.0], "radius": 0.8}
-    assert all(feasible(realise(asked("maze", obstacles=[pillar]), seed)) for seed in range(5))
+    assert all(feasible(realise(asked("maze", obstacles=[pillar]), seed)) for seed in range(2))
     barrier = {"shape": "box", "position": [2.5, 2.5], "size": [0.2, 5.0]}
     small = {"start": (1.0, 2.5), "goal": (4.0, 2.5), "arena": {"size": [5.0, 5.0]}}
     with pytest.raises(UserError, match="no way through a maze"):
@@ -414,7 +417,7 @@ def test_random_tasks_differ_in_their_obstacles_alone_where_only_those_are_asked
 
 @pytest.mark.parametrize("layout", ["semicircle", "arc", "u-shape", "long-wall", "maze"])
 def test_random_tasks_with_traps_can_be_placed_for_every_seed(layout):
-    for seed in range(12):
+    for seed in range(6):
         task = random_task(seed, count=None, layout=layout)
         check(task)
         assert feasible(realise(task))

@@ -310,7 +310,7 @@ blocks = st.builds(
 )  # fmt: skip
 
 
-@settings(max_examples=150)
+@settings(max_examples=40)
 @given(
     st.lists(pillars, max_size=9),
     st.lists(blocks, max_size=4),
