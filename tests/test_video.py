@@ -14,10 +14,10 @@ from PIL import Image
 from synthetic import drive, scenario, standing
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.video import encoder as encoder_module
+from fuzzyq_bullet.video import encoders as encoder_module
 from fuzzyq_bullet.video import frame, record, style
-from fuzzyq_bullet.video.encoder import Encoder
-from fuzzyq_bullet.video.film import Film, Patch
+from fuzzyq_bullet.video.encoders import Encoder, FrameBuffer
+from fuzzyq_bullet.video.paint import DirtyRegion
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -91,14 +91,14 @@ def test_decoded_colours_are_those_that_were_drawn(short: Trajectory, made: Path
 
 def test_every_colour_comes_out_as_it_went_in(tmp_path: Path) -> None:
     colours = [*style.LINES, style.GOAL, style.GROUND, style.TEXT, (0, 0, 0), (255, 255, 255)]
-    film = Film()
-    film.apply(
-        Patch(100 * number, 0, Image.new("RGB", (100, 720), colour))
+    buffer = FrameBuffer()
+    buffer.apply(
+        DirtyRegion(100 * number, 0, Image.new("RGB", (100, 720), colour))
         for number, colour in enumerate(colours)
     )
     with Encoder(tmp_path / "x.mp4") as encoder:
         for _ in range(3):
-            encoder.write(film)
+            encoder.write(buffer)
     shown = decoded(tmp_path / "x.mp4")[1]
     for number, colour in enumerate(colours):
         assert shown[300, 100 * number + 50] == pytest.approx(colour, abs=4)
@@ -246,5 +246,5 @@ def test_the_encoder_writes_every_byte_of_every_frame(
     _false_ffmpeg(tmp_path, monkeypatch, f"wc -c > {tmp_path}/count")
     with Encoder(tmp_path / "x.mp4") as encoder:
         for _ in range(7):
-            encoder.write(Film())
+            encoder.write(FrameBuffer())
     assert int(re.findall(r"\d+", (tmp_path / "count").read_text())[0]) == 7 * 1280 * 720 * 3 // 2

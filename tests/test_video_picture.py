@@ -12,25 +12,24 @@ import pytest
 from PIL import Image
 from synthetic import drive, modes, scenario
 
-from fuzzyq_bullet.fuzzy.paper import RULES as PAPER_RULES
 from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
 from fuzzyq_bullet.trajectory import Collision, Decisions, Ticks
 from fuzzyq_bullet.video import frame, paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
+from fuzzyq_bullet.video.captions import outcome_lines
+from fuzzyq_bullet.video.compositor import Compositor
+from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.panels import Canvas
+from fuzzyq_bullet.video.panels.rules import Rules
 from fuzzyq_bullet.video.record import moments
-from fuzzyq_bullet.video.rules import Rules
 from fuzzyq_bullet.video.scene import Scene
-from fuzzyq_bullet.video.sensing import sensed_at
-from fuzzyq_bullet.video.shown import Shown
-from fuzzyq_bullet.video.stage import Stage
-from fuzzyq_bullet.video.style import MAP, MEANING, RULES, SCENE, SENSES, Rect
-from fuzzyq_bullet.video.timeline import Timeline
-from fuzzyq_bullet.video.words import outcome_lines
+from fuzzyq_bullet.video.style import FUZZIFICATION, MAP, RULES, SCENE, SENSORS, Rect
+from fuzzyq_bullet.video.timeline import Timeline, sensed_at
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.film import Patch
+    from fuzzyq_bullet.video.paint import DirtyRegion
 
 
 def pixels(image: Image.Image, rect: Rect) -> np.ndarray[Any, np.dtype[np.int64]]:
@@ -74,7 +73,7 @@ def test_the_map_shows_path_goal_and_three_lines_at_their_length(run: Trajectory
 
 def test_the_rule_that_fires_most_is_the_brightest(run: Trajectory) -> None:
     time = 5.0
-    index = Shown(run).at(Timeline(run).at(time))
+    index = DecisionHold(run).at(Timeline(run).at(time))
     fired = run.decisions.rules[index]
     image = pixels(frame(run, time), RULES)
     left, top, wide, high = 86, 48, 36, 32
@@ -125,12 +124,12 @@ def test_a_robot_out_of_the_picture_is_left_out(run: Trajectory) -> None:
 def assembled(run: Trajectory, until: float) -> Image.Image:
     image = Image.new("RGB", (style.WIDTH, style.HEIGHT), style.PAGE)
     timeline = Timeline(run)
-    with Stage(run) as stage:
+    with Compositor(run) as compositor:
         for moment in moments(timeline, 1.0):
             if moment.time > until + 1e-6:
                 break
-            for patch in stage.patches(moment):
-                image.paste(patch.image, (patch.x, patch.y))
+            for region in compositor.changes(moment):
+                image.paste(region.image, (region.x, region.y))
     return image
 
 
@@ -247,16 +246,16 @@ def test_every_kind_of_run_is_drawn_with_all_text_in_its_box(
 
     monkeypatch.setattr(paint, "write", write)
     run = all_runs[name]
-    patches: list[Patch] = []
-    with Stage(run) as stage:
+    regions: list[DirtyRegion] = []
+    with Compositor(run) as compositor:
         for number, moment in enumerate(moments(Timeline(run), 1.0)):
             if number % 15 == 0 or moment.over:
                 written.clear()
-                patches += stage.patches(moment)
-    assert {(SCENE.x, SCENE.y), (MAP.x, MAP.y), (MEANING.x, MEANING.y)} <= {
-        (patch.x, patch.y) for patch in patches
+                regions += compositor.changes(moment)
+    assert {(SCENE.x, SCENE.y), (MAP.x, MAP.y), (FUZZIFICATION.x, FUZZIFICATION.y)} <= {
+        (region.x, region.y) for region in regions
     }
-    for x, y, image in patches:
+    for x, y, image in regions:
         assert x % 2 == y % 2 == image.width % 2 == image.height % 2 == 0
         assert min(x, y) >= 0
         assert x + image.width <= style.WIDTH
@@ -427,12 +426,14 @@ def test_marks_and_outline_drawn_step_by_step_are_those_of_one_frame(freed: Traj
 
 def test_rules_that_are_not_asked_are_grey(freed: Trajectory) -> None:
     def table(*times: float) -> np.ndarray[Any, Any]:
-        panel = Rules(freed.decisions, PAPER_RULES["corrected"], math.radians(45.0))
+        canvas = Canvas(RULES, "3  RULES THAT FIRE")
+        panel = Rules(freed, canvas)
         image = Image.new("RGB", (style.WIDTH, style.HEIGHT), style.PAGE)
         for time in times:
-            patch = panel.draw(Timeline(freed).at(time).decision)
-            if patch is not None:
-                image.paste(patch.image, (patch.x, patch.y))
+            moment = Timeline(freed).at(time)
+            panel.draw(replace(moment, shown=moment.decision))
+            for region in canvas.take_changes():
+                image.paste(region.image, (region.x, region.y))
         return pixels(image, RULES)
 
     def colourful(image: np.ndarray[Any, Any]) -> int:
@@ -483,7 +484,7 @@ def test_the_outcome_says_what_happened(all_runs: dict[str, Trajectory]) -> None
 
 def test_the_close_up_has_left_on_the_left(run: Trajectory) -> None:
     picture = frame(run, 7.0)
-    close_up = pixels(picture, Rect(SENSES.x + 8, SENSES.y + 28, 174, 174))
+    close_up = pixels(picture, Rect(SENSORS.x + 8, SENSORS.y + 28, 174, 174))
     columns = [
         np.nonzero(np.abs(close_up - colour).max(axis=-1) <= 12)[1].mean() for colour in style.LINES
     ]

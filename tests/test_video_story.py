@@ -16,16 +16,10 @@ from fuzzyq_bullet import episode
 from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
 from fuzzyq_bullet.scenario import load_scenario
 from fuzzyq_bullet.trajectory import Collision
-from fuzzyq_bullet.video.action import Action
-from fuzzyq_bullet.video.map import Map
-from fuzzyq_bullet.video.meaning import Meaning
-from fuzzyq_bullet.video.record import moments
-from fuzzyq_bullet.video.rules import Rules
-from fuzzyq_bullet.video.scene import Scene
-from fuzzyq_bullet.video.senses import Senses
-from fuzzyq_bullet.video.shown import HOLD, Shown
-from fuzzyq_bullet.video.stage import Stage
-from fuzzyq_bullet.video.story import (
+from fuzzyq_bullet.video.captions import Story
+from fuzzyq_bullet.video.compositor import Compositor
+from fuzzyq_bullet.video.decision_hold import HOLD, DecisionHold
+from fuzzyq_bullet.video.explanation import (
     ALIKE,
     STRAIGHT,
     is_asked,
@@ -35,8 +29,14 @@ from fuzzyq_bullet.video.story import (
     side_of,
     struck,
 )
-from fuzzyq_bullet.video.timeline import NO_DECISION, Timeline
-from fuzzyq_bullet.video.words import Story
+from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.panels.action import Action
+from fuzzyq_bullet.video.panels.fuzzification import Fuzzification
+from fuzzyq_bullet.video.panels.rules import Rules
+from fuzzyq_bullet.video.panels.sensors import Sensors
+from fuzzyq_bullet.video.record import moments
+from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Timeline
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
@@ -192,20 +192,24 @@ def test_in_every_frame_the_sentence_is_true_of_what_the_panels_show(
     real: Trajectory, speed: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     drawn: dict[str, int] = {}
-    for part, place in ((Senses, 1), (Meaning, 1), (Rules, 1), (Action, 2), (Story, 1)):
+    for panel in (Sensors, Fuzzification, Rules, Action):
 
-        def draw(*args: Any, part: Any = part, place: int = place, **_: Any) -> Any:
-            drawn[part.__name__] = args[place]
-            return () if part in (Senses, Meaning, Action) else None
+        def draw(_: Any, moment: Moment, name: str = panel.__name__) -> None:
+            drawn[name] = moment.shown
 
-        monkeypatch.setattr(part, "draw", draw)
+        monkeypatch.setattr(panel, "draw", draw)
+
+    def tell(_: Any, decision: int, *, over: bool) -> None:
+        drawn["Story"] = decision
+
+    monkeypatch.setattr(Story, "draw", tell)
     monkeypatch.setattr(Scene, "draw", lambda *_: None)
     monkeypatch.setattr(Map, "draw", lambda *_: None)
     story, facts = Story(real), real.decisions
-    with Stage(real, speed) as stage:
+    with Compositor(real, speed) as compositor:
         for moment in moments(Timeline(real), speed):
             drawn.clear()
-            if not list(stage.patches(moment)) and not drawn:
+            if not list(compositor.changes(moment)) and not drawn:
                 continue  # the closing frame stays
             assert len(drawn) == 5
             [decision] = set(drawn.values())
@@ -252,8 +256,8 @@ def _agrees(run: Trajectory, decision: int, sentence: str) -> None:
 
 def test_a_decision_stays_long_enough_to_be_read() -> None:
     run = drive(scenario(60, 5, seed=4))
-    timeline, shown = Timeline(run), Shown(run)
-    seen = [shown.at(timeline.at(k / 30)) for k in range(int(timeline.end * 30))]
+    timeline, hold = Timeline(run), DecisionHold(run)
+    seen = [hold.at(timeline.at(k / 30)) for k in range(int(timeline.end * 30))]
     changes = np.flatnonzero(np.diff(seen)) + 1
     assert len(changes) > 5
     for before, after in pairwise(changes.tolist()):
@@ -265,11 +269,11 @@ def test_a_decision_stays_long_enough_to_be_read() -> None:
 
 def test_a_change_of_mode_is_shown_at_once() -> None:
     run = modes(drive(seconds=3.0), (0, 0.5), (1, 0.5))
-    timeline, shown = Timeline(run), Shown(run)
+    timeline, hold = Timeline(run), DecisionHold(run)
     first = int(np.flatnonzero(run.decisions.mode)[0])
     change = float(run.ticks.time[run.decisions.tick[first]])
-    assert shown.at(timeline.at(change - 0.01)) < first
-    assert shown.at(timeline.at(change)) == first
+    assert hold.at(timeline.at(change - 0.01)) < first
+    assert hold.at(timeline.at(change)) == first
     assert "breaks out" in reason(run, first)
 
 

@@ -23,11 +23,10 @@ from fuzzyq_bullet.resources import asset
 from fuzzyq_bullet.scenario import Goal, Limits, Random, Scenario, Start
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video import record
-from fuzzyq_bullet.video.encoder import Encoder
-from fuzzyq_bullet.video.film import Film
+from fuzzyq_bullet.video.compositor import Compositor
+from fuzzyq_bullet.video.encoders import Encoder, FrameBuffer
 from fuzzyq_bullet.video.record import moments
 from fuzzyq_bullet.video.scene import still_meshes
-from fuzzyq_bullet.video.stage import Stage
 from fuzzyq_bullet.video.style import HEIGHT, WIDTH
 from fuzzyq_bullet.video.timeline import Timeline
 from fuzzyq_bullet.video.viewpoint import lens_for
@@ -97,18 +96,18 @@ def _trajectory() -> Trajectory:
 
 
 def _ready_made(trajectory: Trajectory, path: Path, count: int) -> Frames:
-    film = Film()
-    frames: Frames = np.memmap(path, dtype=np.uint8, mode="w+", shape=(count, film.planes.size))
-    with Stage(trajectory) as stage:
+    buffer = FrameBuffer()
+    frames: Frames = np.memmap(path, dtype=np.uint8, mode="w+", shape=(count, buffer.planes.size))
+    with Compositor(trajectory) as compositor:
         for k, moment in enumerate(moments(Timeline(trajectory), 1.0)):
-            film.apply(stage.patches(moment))
-            frames[k] = film.planes
+            buffer.apply(compositor.changes(moment))
+            frames[k] = buffer.planes
     return frames
 
 
 def _encode(frames: Frames, path: Path) -> None:
-    film = Film()
+    buffer = FrameBuffer()
     with Encoder(path) as encoder:
         for planes in frames:
-            film.planes = planes
-            encoder.write(film)
+            buffer.planes = planes
+            encoder.write(buffer)

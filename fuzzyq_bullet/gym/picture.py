@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video.map import Map
-from fuzzyq_bullet.video.sensing import sensed_at
-from fuzzyq_bullet.video.timeline import Timeline
+from fuzzyq_bullet.video.timeline import Timeline, sensed_at
 
 
 def picture(trajectory: Trajectory) -> NDArray[np.uint8]:

@@ -10,12 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
-from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video.footprints import arrow, clipped, corners_for, extent, footprint
 from fuzzyq_bullet.video.marks import began, cross, diamond, grid_step, left_off
-from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, extent, footprint
-from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed
+from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.style import MAP
-from fuzzyq_bullet.video.timeline import Steady
+from fuzzyq_bullet.video.timeline import ROBOT_RADIUS, Sensed, Steady
 from fuzzyq_bullet.video.viewpoint import extent_of
 
 if TYPE_CHECKING:
@@ -61,7 +60,7 @@ class Map:
 
     def draw(
         self, moment: Moment, sensed: Sensed | None, hit: tuple[float, float] | None = None
-    ) -> Patch | None:
+    ) -> DirtyRegion | None:
         """Return what changed since the last moment drawn; ``hit`` marks a collision (m)."""
         if not self._steady.moved(moment) and sensed is self._sensed:
             return None
@@ -99,7 +98,7 @@ class Map:
             if len(self._struck):
                 _draw_ring(image, box, self._struck)
             cross(image, box, self.spot([hit])[0], 10.0)
-        return Patch(MAP.x + box[0], MAP.y + box[1], image)
+        return DirtyRegion(MAP.x + box[0], MAP.y + box[1], image)
 
     def _decorate(self, decision: int) -> paint.Box | None:
         """Mark where ways out began and ended so far, and outline what the robot goes round now."""

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import Image, ImageChops, ImageDraw
 
 from fuzzyq_bullet.video import style
-from fuzzyq_bullet.video.film import Patch
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.video.style import Colour, Rect
@@ -30,6 +29,20 @@ _TRAIL_WIDTH = 2.4
 _TRAIL_STEP = 1.5
 _FAR = 20_000.0
 """Pillow draws nothing sensible beyond some tens of thousands of pixels."""
+
+
+class DirtyRegion(NamedTuple):
+    """A part of the frame that changed; place and size are even.
+
+    Attributes:
+        x: Left edge in the frame (pixels).
+        y: Top edge.
+        image: What is to be seen there now, RGB.
+    """
+
+    x: int
+    y: int
+    image: Image.Image
 
 
 class Scaled:
@@ -312,8 +325,8 @@ def card(rect: Rect, title: str = "") -> Image.Image:
     return image
 
 
-def patch_of(rect: Rect, image: Image.Image, box: Box | None = None) -> Patch:
+def region_of(rect: Rect, image: Image.Image, box: Box | None = None) -> DirtyRegion:
     """Return a part of the picture of ``rect`` as a patch of the frame."""
     if box is None:
-        return Patch(rect.x, rect.y, image)
-    return Patch(rect.x + box[0], rect.y + box[1], image.crop(box))
+        return DirtyRegion(rect.x, rect.y, image)
+    return DirtyRegion(rect.x + box[0], rect.y + box[1], image.crop(box))

@@ -10,11 +10,16 @@ from PIL import Image
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
-from fuzzyq_bullet.video import animation
-from fuzzyq_bullet.video.encoder import Encoder
-from fuzzyq_bullet.video.film import Film
-from fuzzyq_bullet.video.stage import Stage, closing
-from fuzzyq_bullet.video.style import FPS, HEIGHT, PAGE, WIDTH
+from fuzzyq_bullet.video.compositor import Compositor, closing
+from fuzzyq_bullet.video.encoders import (
+    ANIMATION_ENDINGS,
+    ANIMATION_FPS,
+    Animation,
+    Encoder,
+    FrameBuffer,
+)
+from fuzzyq_bullet.video.panels import frame_size
+from fuzzyq_bullet.video.style import FPS, PAGE
 from fuzzyq_bullet.video.timeline import Moment, Timeline
 
 if TYPE_CHECKING:
@@ -44,7 +49,8 @@ class VideoInfo(NamedTuple):
     @classmethod
     def of(cls, frames: int, fps: int, *, small: bool) -> VideoInfo:
         """Return what so many frames make."""
-        return cls(frames, frames / fps, (WIDTH // 2, HEIGHT // 2) if small else (WIDTH, HEIGHT))
+        width, height = frame_size()
+        return cls(frames, frames / fps, (width // 2, height // 2) if small else (width, height))
 
 
 def record(
@@ -76,9 +82,9 @@ def record(
     """
     path = Path(path)
     ending = path.suffix.lower()
-    if ending not in (".mp4", *animation.ENDINGS):
+    if ending not in (".mp4", *ANIMATION_ENDINGS):
         raise UserError(
-            f"{path}: a film ends in .mp4, an animated picture in {' or '.join(animation.ENDINGS)}"
+            f"{path}: a film ends in .mp4, an animated picture in {' or '.join(ANIMATION_ENDINGS)}"
         )
     if not (isinstance(speed, (int, float)) and SLOWEST <= speed <= FASTEST):
         raise UserError(f"speed {speed!r}: the speed of a video is {SLOWEST:g} to {FASTEST:g}")
@@ -86,20 +92,20 @@ def record(
     if ending == ".mp4":
         info = VideoInfo.of(frame_count(timeline, speed), FPS, small=small)
     else:
-        info = VideoInfo.of(frame_count(timeline, speed, animation.FPS), animation.FPS, small=True)
+        info = VideoInfo.of(frame_count(timeline, speed, ANIMATION_FPS), ANIMATION_FPS, small=True)
     told = progress or (lambda done, total: None)
-    with written_beside(path) as part, Stage(trajectory, speed) as stage:
+    with written_beside(path) as part, Compositor(trajectory, speed) as compositor:
         if ending == ".mp4":
-            film = Film()
-            with Encoder(part, path, small=small) as encoder:
+            buffer = FrameBuffer(frame_size())
+            with Encoder(part, path, size=frame_size(), small=small) as encoder:
                 for number, moment in enumerate(moments(timeline, speed), start=1):
-                    film.apply(stage.patches(moment))
-                    encoder.write(film)
+                    buffer.apply(compositor.changes(moment))
+                    encoder.write(buffer)
                     told(number, info.frames)
         else:
-            with animation.Animation(part, path) as picture:
-                for number, moment in enumerate(moments(timeline, speed, animation.FPS), start=1):
-                    picture.write(stage.patches(moment))
+            with Animation(part, path, frame_size()) as picture:
+                for number, moment in enumerate(moments(timeline, speed, ANIMATION_FPS), start=1):
+                    picture.write(compositor.changes(moment))
                     told(number, info.frames)
     return info
 
@@ -114,12 +120,12 @@ def frame(trajectory: Trajectory, time: float) -> Image.Image:
         raise UserError("the time of a frame must be a number of seconds")
     timeline = Timeline(trajectory)
     moment = timeline.at(time)
-    image = Image.new("RGB", (WIDTH, HEIGHT), PAGE)
-    with Stage(trajectory) as stage:
+    image = Image.new("RGB", frame_size(), PAGE)
+    with Compositor(trajectory) as compositor:
         if time > timeline.end:
             moment = closing(moment)
-        for patch in stage.patches(moment):
-            image.paste(patch.image, (patch.x, patch.y))
+        for region in compositor.changes(moment):
+            image.paste(region.image, (region.x, region.y))
     return image
 
 

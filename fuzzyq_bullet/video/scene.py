@@ -11,12 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import Image, ImageChops, ImageDraw
 
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera, photograph
-from fuzzyq_bullet.video import paint, solids, style
-from fuzzyq_bullet.video.film import Patch
+from fuzzyq_bullet.video import meshes, paint, style
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step
-from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed
+from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.style import SCENE
-from fuzzyq_bullet.video.timeline import Steady
+from fuzzyq_bullet.video.timeline import ROBOT_RADIUS, Sensed, Steady
 from fuzzyq_bullet.video.viewpoint import extent_of, lens_for, way
 
 if TYPE_CHECKING:
@@ -63,7 +62,7 @@ class Scene:
 
     def draw(
         self, moment: Moment, sensed: Sensed | None, hit: tuple[float, float] | None = None
-    ) -> Patch | None:
+    ) -> DirtyRegion | None:
         """Return what changed since the last moment drawn; ``hit`` marks a collision (m)."""
         if not self._steady.moved(moment) and sensed is self._sensed:
             return None
@@ -103,7 +102,7 @@ class Scene:
             self._place_robot(image, box, window, moment)
         if hit is not None:
             cross(image, box, self._seen([hit])[0], 11.0)
-        return Patch(SCENE.x + box[0], SCENE.y + box[1], image)
+        return DirtyRegion(SCENE.x + box[0], SCENE.y + box[1], image)
 
     def height_of(self, position: tuple[float, float]) -> float:
         """Return how far down in the picture a point of the ground (m) is seen (pixels)."""
@@ -164,25 +163,24 @@ class Scene:
 
 def still_meshes(trajectory: Trajectory, lens: Lens) -> tuple[list[Mesh], bool]:
     """Return the surfaces of all that never moves, and whether the first of them is ground."""
-    seen = solids.ground_seen(lens)
+    seen = meshes.ground_seen(lens)
     scenario = trajectory.scenario
-    ground = solids.ground_of(scenario, way(trajectory), seen)
+    ground = meshes.ground_of(scenario, way(trajectory), seen)
     low_x, low_y, high_x, high_y = extent_of(trajectory)
     span = max(high_x - low_x, high_y - low_y)
     tall = max(min(0.9, 0.25 * span), 0.05 * span)
-    meshes = solids.solids(
+    return meshes.solids(
         ground,
-        solids.obstacles_seen(scenario, lens, seen),
-        solids.walls_of(scenario, seen),
-        solids.flag(scenario.goal.position, lens, tall),
-    )
-    return meshes, len(ground) >= 3
+        meshes.obstacles_seen(scenario, lens, seen),
+        meshes.walls_of(scenario, seen),
+        meshes.flag(scenario.goal.position, lens, tall),
+    ), len(ground) >= 3
 
 
 def _still(trajectory: Trajectory, lens: Lens) -> tuple[Picture, Image.Image]:
     """Return the picture of all that never moves, and where it shows ground (mode L)."""
-    meshes, grounded = still_meshes(trajectory, lens)
-    picture = photograph(meshes, lens, DETAIL)
+    surfaces, grounded = still_meshes(trajectory, lens)
+    picture = photograph(surfaces, lens, DETAIL)
     bare = (picture.mask == 0) & grounded
     return picture, Image.fromarray(np.where(bare, 255, 0).astype(np.uint8)).reduce(DETAIL)
 
@@ -205,7 +203,7 @@ def _decorated(
         angle = np.linspace(0.0, 2 * np.pi, 49)
         return seen(np.stack([np.cos(angle), np.sin(angle)], axis=1) * radius + centre)
 
-    area = solids.ground_seen(lens)
+    area = meshes.ground_seen(lens)
     low, high = area.min(axis=0), area.max(axis=0)
     step = grid_step(float((high - low).max()))
 
@@ -216,7 +214,7 @@ def _decorated(
             pen.line(scaled(seen([(low[0], y), (high[0], y)])), 255, scaled.factor)
 
     def shadows(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
-        for outline in solids.obstacles_seen(scenario, lens, area):
+        for outline in meshes.obstacles_seen(scenario, lens, area):
             for part in np.linspace(0.0, 1.0, 4):
                 pen.polygon(scaled(seen(outline + np.array((0.10, 0.14)) * part)), fill=140)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -45,10 +46,31 @@ HEADER = Rect(10, 0, 1260, 40)
 SCENE = Rect(10, 40, 880, 384)
 MAP = Rect(898, 40, 372, 384)
 STORY = Rect(10, 432, 1260, 58)
-SENSES = Rect(10, 498, 316, 212)
-MEANING = Rect(334, 498, 274, 212)
+SENSORS = Rect(10, 498, 316, 212)
+FUZZIFICATION = Rect(334, 498, 274, 212)
 RULES = Rect(616, 498, 274, 212)
 ACTION = Rect(898, 498, 372, 212)
+
+_ADDED_HEIGHT, _GAP, _ROW = 160, 8, 4
+"""Panels of a user's own: how high they are, what lies between them, how many share a row."""
+
+
+def places_below(count: int) -> list[Rect]:
+    """Return places for ``count`` more panels, in rows below all others."""
+    places = []
+    for first in range(0, count, _ROW):
+        number = min(count - first, _ROW)
+        width = (HEADER.width - (number - 1) * _GAP) // number // 2 * 2
+        top = SENSORS.bottom + _GAP + first // _ROW * (_ADDED_HEIGHT + _GAP)
+        lefts = (HEADER.x + k * (width + _GAP) for k in range(number))
+        places += [Rect(left, top, width, _ADDED_HEIGHT) for left in lefts]
+    return places
+
+
+def frame_size(added: int = 0) -> tuple[int, int]:
+    """Return width and height (pixels) of a frame with so many more panels."""
+    return WIDTH, HEIGHT + math.ceil(added / _ROW) * (_ADDED_HEIGHT + _GAP)
+
 
 PAGE: Colour = (13, 16, 21)
 CARD: Colour = (24, 29, 37)

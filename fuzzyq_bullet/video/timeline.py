@@ -1,4 +1,4 @@
-"""What was going on at any time of a record: pose in between ticks, decision in force."""
+"""What was going on at any time of a record: pose in between ticks, decision, what was sensed."""
 
 from __future__ import annotations
 
@@ -8,10 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fuzzyq_bullet.video.footprints import Floats, corridor
+
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
 
 NO_DECISION = -1
+ROBOT_RADIUS = 0.2
+"""Radius of the robot's disc (m): that of ``assets/robot.urdf``."""
+DEFAULT_RANGE = 1.0
+"""Range of the detection lines (m) where a record does not tell: 5·S_p."""
 
 _LEAST_SHIFT = 0.4
 """A smaller shift (pixels) is not seen."""
@@ -31,6 +37,7 @@ class Moment:
         clearance: Distance to the nearest thing (m).
         decision: Index of the decision in force, or ``NO_DECISION``.
         over: Whether the run has ended.
+        shown: Index of the decision that panels and sentence explain, or ``NO_DECISION``.
     """
 
     time: float
@@ -41,6 +48,7 @@ class Moment:
     clearance: float
     decision: int
     over: bool = False
+    shown: int = NO_DECISION
 
 
 class Timeline:
@@ -98,6 +106,59 @@ class Steady:
             return False
         self._held = moment
         return True
+
+
+@dataclass(frozen=True, slots=True)
+class Sensed:
+    """One decision in the plane.
+
+    Attributes:
+        origin: Where the robot was when it sensed (m).
+        lines: Heading (rad) and free length (m) of the left, middle and right detection line;
+            empty for a planner without lines.
+        corridors: What the front half of the disc sweeps along each line (m), shape (N, 2) each.
+        radius: Radius of the disc that the lengths are meant for (m).
+        heading: The heading decided (rad).
+        target: The planner's temporary target (m); None without one, or beyond the walls.
+    """
+
+    origin: tuple[float, float]
+    lines: tuple[tuple[float, float], ...]
+    corridors: tuple[Floats, ...]
+    radius: float
+    heading: float
+    target: tuple[float, float] | None
+
+
+def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
+    """Return what decision number ``decision`` was made of, None before the first."""
+    if decision == NO_DECISION:
+        return None
+    decisions = trajectory.decisions
+    x, y = trajectory.ticks.position[int(decisions.tick[decision])].tolist()
+    headings, lengths = decisions.lines[decision].tolist(), decisions.lengths[decision].tolist()
+    known = all(map(math.isfinite, (*headings, *lengths)))
+    target_x, target_y = decisions.target[decision].tolist()
+    arena = trajectory.scenario.arena
+    aimed = math.isfinite(target_x + target_y)
+    inside = 0.0 <= target_x <= arena.size[0] and 0.0 <= target_y <= arena.size[1]
+    aimed = aimed and (inside or not arena.walls)
+    lines = tuple(zip(headings, lengths, strict=True)) if known else ()
+    return Sensed(
+        origin=(x, y),
+        lines=lines,
+        corridors=tuple(corridor((x, y), *line, ROBOT_RADIUS) for line in lines),
+        radius=ROBOT_RADIUS,
+        heading=float(decisions.heading[decision]),
+        target=(target_x, target_y) if aimed else None,
+    )
+
+
+def sensor_range(trajectory: Trajectory) -> float:
+    """Return the longest detection line (m) of a run: what they measure where nothing is near."""
+    lengths = trajectory.decisions.lengths
+    known = lengths[np.isfinite(lengths)]
+    return float(known.max()) if known.size and known.max() > 0.0 else DEFAULT_RANGE
 
 
 def _between(

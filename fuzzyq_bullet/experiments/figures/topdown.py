@@ -16,7 +16,7 @@ from matplotlib.patches import Circle, Polygon
 
 from fuzzyq_bullet.planning.base import MODES
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle
-from fuzzyq_bullet.video.outline import arrow, footprint
+from fuzzyq_bullet.video.footprints import arrow, footprint
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,15 +12,15 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.film import Patch
-from fuzzyq_bullet.video.meaning import NEAR_WORDS
-from fuzzyq_bullet.video.story import is_asked
+from fuzzyq_bullet.video.explanation import is_asked
+from fuzzyq_bullet.video.panels.base import Canvas, register_panel
+from fuzzyq_bullet.video.panels.fuzzification import NEAR_WORDS, rule_base
 from fuzzyq_bullet.video.style import RULES
-from fuzzyq_bullet.video.timeline import NO_DECISION
+from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.rules import RuleBase
-    from fuzzyq_bullet.trajectory import Decisions
+    from fuzzyq_bullet.trajectory import Trajectory
 
 _LEFT, _TOP = 86, 48
 _CELL_WIDTH, _CELL_HEIGHT = 36, 32
@@ -34,26 +34,24 @@ _TITLES = {True: "3  RULES THAT FIRE", False: "3  RULES (NOT ASKED)"}
 _TITLE: paint.Box = (10, 4, 264, 26)
 
 
+@register_panel("rules", title=_TITLES[True], place=RULES)
 class Rules:
     """Panel 3 of one run.
 
     Columns run from "left much freer" to "right much freer", so that rules which turn left stand
     on the left.
-
-    Args:
-        decisions: What the planner decided.
-        base: The rules, with the outputs turn and step.
-        turn_unit: A_p: the turn that its scale multiplies (rad).
     """
 
-    def __init__(self, decisions: Decisions, base: RuleBase, turn_unit: float) -> None:
-        self._decisions = decisions
+    def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
+        self._canvas, self._image = canvas, canvas.image
+        self._decisions = trajectory.decisions
+        base = rule_base(trajectory)
+        turn_unit = float(getattr(trajectory.scenario.planner, "turn_unit", math.radians(45.0)))
         self._rows, self._columns = len(base.row.sets), len(base.column.sets)
         self._arrows = [
             [_arrow(base, row, column, turn_unit) for column in range(self._columns)]
             for row in range(self._rows)
         ]
-        self._image = paint.card(RULES)
         right = _LEFT + self._columns * _CELL_WIDTH - _GAP
         paint.write(self._image, (_LEFT, 43), "left freer", style.MUTED, 15)
         paint.write(self._image, (right, 43), "right freer", style.MUTED, 15, align="r")
@@ -64,10 +62,11 @@ class Rules:
         self._asked: bool | None = None
         self._decision: int | None = None
 
-    def draw(self, decision: int) -> Patch | None:
-        """Return the panel, or the part of it that changed since last time."""
+    def draw(self, moment: Moment) -> None:
+        """Light the rules as strongly as they fired for the decision shown."""
+        decision = moment.shown
         if decision == self._decision:
-            return None
+            return
         self._decision = decision
         strengths = np.zeros((self._rows, self._columns))
         asked = True
@@ -75,7 +74,7 @@ class Rules:
             asked = is_asked(self._decisions, decision)
             strengths = np.clip(np.nan_to_num(self._decisions.rules[decision]), 0.0, 1.0)
         strongest = float(strengths.max())
-        fresh, changed = not self._shown, []
+        changed = []
         if asked != self._asked:
             self._asked = asked
             changed.append(self._draw_title(_TITLES[asked]))
@@ -87,10 +86,9 @@ class Rules:
                 if self._shown.get((row, column)) != look:
                     self._shown[row, column] = look
                     changed.append(self._draw_cell(row, column, *look))
-        if fresh:
-            return Patch(RULES.x, RULES.y, self._image)
         box = paint.joined(changed)
-        return None if box is None else paint.patch_of(RULES, self._image, box)
+        if box is not None:
+            self._canvas.changed(box)
 
     def _draw_title(self, title: str) -> paint.Box:
         ImageDraw.Draw(self._image).rectangle(_TITLE, style.CARD)

@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.fuzzy.paper import RULES
-from fuzzyq_bullet.video.action import Action
+from fuzzyq_bullet.video.captions import Clock, Story, caption, outcome_card
+from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.map import Map
-from fuzzyq_bullet.video.meaning import Meaning
-from fuzzyq_bullet.video.rules import Rules
+from fuzzyq_bullet.video.panels import Panels
 from fuzzyq_bullet.video.scene import Scene
-from fuzzyq_bullet.video.senses import Senses
-from fuzzyq_bullet.video.sensing import Sensed, sensed_at
-from fuzzyq_bullet.video.shown import Shown
 from fuzzyq_bullet.video.style import SCENE
-from fuzzyq_bullet.video.words import Clock, Story, caption, outcome_card
+from fuzzyq_bullet.video.timeline import Sensed, sensed_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.film import Patch
+    from fuzzyq_bullet.video.paint import DirtyRegion
     from fuzzyq_bullet.video.timeline import Moment
 
 
-class Stage:
+class Compositor:
     """All views of one run. Use as a context: the scene holds a renderer.
 
-    Scene and map are live. The four panels and the sentence show one decision, the same one.
+    Scene and map are live. The panels and the sentence show one decision, the same one.
 
     Args:
         trajectory: The run.
@@ -38,31 +33,24 @@ class Stage:
 
     def __init__(self, trajectory: Trajectory, speed: float = 1.0) -> None:
         self._trajectory = trajectory
-        decisions = trajectory.decisions
-        settings = trajectory.scenario.planner
-        base = RULES.get(getattr(settings, "rules", "corrected"), RULES["corrected"])
-        turn_unit = float(getattr(settings, "turn_unit", math.radians(45.0)))
         self._map = Map(trajectory)
-        self._senses = Senses(trajectory)
-        self._meaning = Meaning(decisions, base.row, base.column)
-        self._rules = Rules(decisions, base, turn_unit)
-        self._action = Action(trajectory)
+        self._panels = Panels(trajectory)
         self._clock = Clock(speed)
         self._story = Story(trajectory)
-        self._shown = Shown(trajectory, speed)
+        self._hold = DecisionHold(trajectory, speed)
         self._fresh = True
         self._decision: int | None = None
         self._sensed: Sensed | None = None
         self._over = False
         self._scene = Scene(trajectory)
 
-    def __enter__(self) -> Stage:
+    def __enter__(self) -> Compositor:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._scene.close()
 
-    def patches(self, moment: Moment) -> Iterator[Patch]:
+    def changes(self, moment: Moment) -> Iterator[DirtyRegion]:
         """Yield what changed since the last moment; all of the frame, the first time."""
         if self._over and moment.over:
             return
@@ -72,22 +60,20 @@ class Stage:
         if moment.decision != self._decision:
             self._decision = moment.decision
             self._sensed = sensed_at(self._trajectory, moment.decision)
-        sensed, shown = self._sensed, self._shown.at(moment)
+        moment = replace(moment, shown=self._hold.at(moment))
+        sensed = self._sensed
         hit = (
             self._trajectory.collision.point if moment.over and self._trajectory.collision else None
         )
-        for patch in (
+        for region in (
             self._scene.draw(moment, sensed, hit),
             self._map.draw(moment, sensed, hit),
-            *self._senses.draw(shown),
-            *self._meaning.draw(shown),
-            self._rules.draw(shown),
-            *self._action.draw(moment, shown),
+            *self._panels.changes(moment),
             self._clock.draw(moment),
-            self._story.draw(shown, over=moment.over),
+            self._story.draw(moment.shown, over=moment.over),
         ):
-            if patch is not None:
-                yield patch
+            if region is not None:
+                yield region
         if moment.over:
             self._over = True
             # Where the run ended must stay in sight.

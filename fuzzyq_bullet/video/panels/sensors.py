@@ -10,13 +10,19 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.film import Patch
-from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, corridor, extent, footprint
-from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed, sensed_at, sensor_range
-from fuzzyq_bullet.video.solids import walls_of
-from fuzzyq_bullet.video.story import is_clear
-from fuzzyq_bullet.video.style import SENSES
-from fuzzyq_bullet.video.timeline import NO_DECISION
+from fuzzyq_bullet.video.explanation import is_clear
+from fuzzyq_bullet.video.footprints import arrow, clipped, corners_for, corridor, extent, footprint
+from fuzzyq_bullet.video.meshes import walls_of
+from fuzzyq_bullet.video.panels.base import Canvas, register_panel
+from fuzzyq_bullet.video.style import SENSORS
+from fuzzyq_bullet.video.timeline import (
+    NO_DECISION,
+    ROBOT_RADIUS,
+    Moment,
+    Sensed,
+    sensed_at,
+    sensor_range,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,10 +43,12 @@ _LARGE = 50.0
 """An outline that reaches farther (m) is cut before it is drawn: Pillow has its limits."""
 
 
-class Senses:
+@register_panel("sensors", title="1  SENSES", place=SENSORS)
+class Sensors:
     """Panel 1 of one run."""
 
-    def __init__(self, trajectory: Trajectory) -> None:
+    def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
+        self._canvas = canvas
         self._trajectory = trajectory
         self._decisions = trajectory.decisions
         self._range = sensor_range(trajectory)
@@ -53,7 +61,7 @@ class Senses:
         self._extents = np.array([extent(o) for o in scenario.obstacles])
         everywhere = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * 1e4
         self._walls = walls_of(scenario, everywhere)
-        self._image = paint.card(SENSES, "1  SENSES")
+        self._image = paint.card(SENSORS, "1  SENSORS")
         self._blank = self._image.crop(_COLUMN)
         self._round = paint.mask(
             (0, 0, _DIAMETER, _DIAMETER),
@@ -61,26 +69,18 @@ class Senses:
         )
         self._decision: int | None = None
 
-    def draw(self, decision: int) -> list[Patch]:
-        """Return what changed since the last decision drawn.
-
-        It shows the instant of the decision: what its numbers were measured at.
-        """
+    def draw(self, moment: Moment) -> None:
+        """Draw the instant of the decision shown: what its numbers were measured at."""
+        decision = moment.shown
         if decision == self._decision:
-            return []
-        column = self._blank.copy()
+            return
+        self._decision = decision
+        column = self._canvas.blank(_COLUMN)
         self._write_numbers(column, decision)
-        self._image.paste(column, _COLUMN[:2])
+        self._canvas.paste(column, _COLUMN[:2])
         view = Image.new("RGB", (_DIAMETER, _DIAMETER), style.CARD)
         view.paste(self._close_up(decision).reduce(_FACTOR), mask=self._round)
-        self._image.paste(view, _LENS[:2])
-        fresh, self._decision = self._decision is None, decision
-        if fresh:
-            return [Patch(SENSES.x, SENSES.y, self._image)]
-        return [
-            Patch(SENSES.x + _COLUMN[0], SENSES.y + _COLUMN[1], column),
-            Patch(SENSES.x + _LENS[0], SENSES.y + _LENS[1], view),
-        ]
+        self._canvas.paste(view, _LENS[:2])
 
     def _close_up(self, decision: int) -> Image.Image:
         sensed: Sensed | None = sensed_at(self._trajectory, decision)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.physics.camera import Lens, Mesh
 from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import style
-from fuzzyq_bullet.video.outline import clipped, corners_for, extent, footprint
+from fuzzyq_bullet.video.footprints import clipped, corners_for, extent, footprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

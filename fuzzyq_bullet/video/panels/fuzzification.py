@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from fuzzyq_bullet.fuzzy.paper import RULES
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.film import Patch
-from fuzzyq_bullet.video.story import is_clear
-from fuzzyq_bullet.video.style import MEANING
-from fuzzyq_bullet.video.timeline import NO_DECISION
+from fuzzyq_bullet.video.explanation import is_clear
+from fuzzyq_bullet.video.panels.base import Canvas, register_panel
+from fuzzyq_bullet.video.style import FUZZIFICATION
+from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
+    from fuzzyq_bullet.fuzzy.rules import RuleBase
     from fuzzyq_bullet.fuzzy.sets import Variable
-    from fuzzyq_bullet.trajectory import Decisions
+    from fuzzyq_bullet.trajectory import Trajectory
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -26,7 +28,7 @@ SIDE_WORDS = ("right much freer", "right freer", "alike", "left freer", "left mu
 
 _PLOT_HEIGHT = 46
 _LEFT = 14
-_WIDTH = MEANING.width - 2 * _LEFT
+_WIDTH = FUZZIFICATION.width - 2 * _LEFT
 _LEVELS = 24
 """Steps in which a membership lights its set."""
 _DIMMED = [[round(v * 0.8 * level / _LEVELS) for v in range(256)] for level in range(_LEVELS + 1)]
@@ -68,7 +70,7 @@ class Sets:
         )
         self.top = top
         self._shown: tuple[object, ...] | None = None
-        blank = Image.new("RGB", (MEANING.width, 88), style.CARD)
+        blank = Image.new("RGB", (FUZZIFICATION.width, 88), style.CARD)
         paint.write(blank, (_LEFT, 16), name, style.MUTED, 17)
         for curve_mask in self._curves:
             blank.paste(style.FAINT, self._inside(*self._box[:2]), curve_mask)
@@ -138,27 +140,23 @@ class Sets:
             paint.write(image, (x, y), one.label, colour, 15, bold=bold, align="m")
 
 
-class Meaning:
-    """Panel 2 of one run.
+@register_panel("fuzzification", title="2  JUDGES", place=FUZZIFICATION)
+class Fuzzification:
+    """Panel 2 of one run."""
 
-    Args:
-        decisions: What the planner decided.
-        distance: The variable of the distance.
-        difference: The variable of the difference.
-    """
-
-    def __init__(self, decisions: Decisions, distance: Variable, difference: Variable) -> None:
-        self._decisions = decisions
-        self._near = Sets(distance, "room ahead:", NEAR_WORDS, 28, mirrored=False)
-        self._side = Sets(difference, "sides:", SIDE_WORDS, 120, mirrored=True)
-        self._card = paint.card(MEANING, "2  JUDGES")
+    def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
+        self._canvas = canvas
+        self._decisions = trajectory.decisions
+        base = rule_base(trajectory)
+        self._near = Sets(base.row, "room ahead:", NEAR_WORDS, 28, mirrored=False)
+        self._side = Sets(base.column, "sides:", SIDE_WORDS, 120, mirrored=True)
         self._decision: int | None = None
 
-    def draw(self, decision: int) -> list[Patch]:
-        """Return what changed since last time."""
+    def draw(self, moment: Moment) -> None:
+        """Mark where the values of the decision shown lie."""
+        decision = moment.shown
         if decision == self._decision:
-            return []
-        patches = [Patch(MEANING.x, MEANING.y, self._card)] if self._decision is None else []
+            return
         self._decision = decision
         d, blank = self._decisions, np.full(5, np.nan)
         if decision == NO_DECISION:
@@ -168,11 +166,15 @@ class Meaning:
             said = ("way is clear", "not asked") if is_clear(d, decision) else ("", "")
             near = self._near.draw(float(d.distance[decision]), d.near[decision], said[0])
             side = self._side.draw(float(d.difference[decision]), d.side[decision], said[1])
-        plots = ((self._near, near), (self._side, side))
-        for plot, image in plots:
+        for plot, image in ((self._near, near), (self._side, side)):
             if image is not None:
-                patches.append(Patch(MEANING.x, MEANING.y + plot.top, image))
-        return patches
+                self._canvas.paste(image, (0, plot.top))
+
+
+def rule_base(trajectory: Trajectory) -> RuleBase:
+    """Return the rules that the planner of a run asks; those of the paper if it has none."""
+    named: Any = getattr(trajectory.scenario.planner, "rules", "corrected")
+    return RULES.get(named, RULES["corrected"])
 
 
 def _drawn(box: paint.Box, points: Floats, *, fill: bool) -> Image.Image:

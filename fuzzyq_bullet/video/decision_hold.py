@@ -6,7 +6,7 @@ import math
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.video.story import is_clear, side_of
+from fuzzyq_bullet.video.explanation import is_clear, side_of
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ HOLD = 0.5
 """Least time that a decision is shown (s of video), unless what it means is no longer so."""
 
 
-class Shown:
+class DecisionHold:
     """The decision shown at any time of a run; it depends on nothing but the time.
 
     Each is held for a while, then gives way to the one in force. Another mode, a turn to the other

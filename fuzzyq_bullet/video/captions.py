@@ -9,8 +9,8 @@ from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.planning.base import MODES
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.film import Patch
-from fuzzyq_bullet.video.story import reason, struck
+from fuzzyq_bullet.video.explanation import reason, struck
+from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.style import HEADER, SCENE, STORY, Rect
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
@@ -37,7 +37,7 @@ def planner_name(trajectory: Trajectory) -> str:
     return str(getattr(trajectory.scenario.planner, "name", None) or "unknown planner")
 
 
-def caption(trajectory: Trajectory) -> Patch:
+def caption(trajectory: Trajectory) -> DirtyRegion:
     """Return the line that says which scenario, planner and seed this is."""
     scenario = trajectory.scenario
     image = Image.new("RGB", HEADER.size, style.PAGE)
@@ -51,7 +51,7 @@ def caption(trajectory: Trajectory) -> Patch:
     paint.write(image, (4, 28), name, style.TEXT, size, bold=True)
     x = 4 + style.text_width(name, size, True) + 24
     paint.write(image, (x, 28), details, style.MUTED, small)
-    return Patch(HEADER.x, HEADER.y, image)
+    return DirtyRegion(HEADER.x, HEADER.y, image)
 
 
 class Clock:
@@ -61,7 +61,7 @@ class Clock:
         self._speed = "" if speed == 1.0 else f"{speed:g}× speed"
         self._shown = ""
 
-    def draw(self, moment: Moment) -> Patch | None:
+    def draw(self, moment: Moment) -> DirtyRegion | None:
         """Return the clock if it shows another time than last."""
         text = f"{moment.time:.1f} s"
         if text == self._shown:
@@ -71,7 +71,7 @@ class Clock:
         pen = ImageDraw.Draw(image)
         paint.write(image, (_CLOCK.width - 4, 28), text, style.TEXT, 24, bold=True, align="r")
         pen.text((0, 28), self._speed, style.MUTED, style.font(18), anchor="ls")
-        return Patch(_CLOCK.x, _CLOCK.y, image)
+        return DirtyRegion(_CLOCK.x, _CLOCK.y, image)
 
 
 class Story:
@@ -84,7 +84,7 @@ class Story:
         self._decision: tuple[int, bool] | None = None
         self._shown: tuple[str, str] | None = None
 
-    def draw(self, decision: int, *, over: bool = False) -> Patch | None:
+    def draw(self, decision: int, *, over: bool = False) -> DirtyRegion | None:
         """Return the strip if it says something else than last."""
         if (decision, over) == self._decision:
             return None
@@ -107,7 +107,7 @@ class Story:
         text, size = style.fitting(sentence, room, (30, 27, 24, 21), bold=True)
         y = STORY.height // 2 + round(size * 0.36)
         paint.write(image, (_BADGE + 18, y), text, style.TEXT, size, bold=True)
-        return Patch(STORY.x, STORY.y, image)
+        return DirtyRegion(STORY.x, STORY.y, image)
 
     def sentence(self, decision: int, *, over: bool = False) -> str:
         """Return what is said of a decision; after a collision, what the robot ran into."""
@@ -132,7 +132,7 @@ def outcome_lines(trajectory: Trajectory) -> tuple[str, str]:
     return title, "   ".join(facts)
 
 
-def outcome_card(trajectory: Trajectory, *, low: bool) -> Patch:
+def outcome_card(trajectory: Trajectory, *, low: bool) -> DirtyRegion:
     """Return the card that closes the video, to be laid over the scene, high or low in it."""
     title, figures = outcome_lines(trajectory)
     _, colour = _OUTCOMES[trajectory.outcome]
@@ -145,4 +145,4 @@ def outcome_card(trajectory: Trajectory, *, low: bool) -> Patch:
     paint.write(image, (_CARD.width / 2, 64), title, colour, size, bold=True, align="m")
     figures, size = style.fitting(figures, room, (26, 24, 22, 20))
     paint.write(image, (_CARD.width / 2, 108), figures, style.TEXT, size, align="m")
-    return Patch(_CARD.x, _LOWER if low else _CARD.y, image)
+    return DirtyRegion(_CARD.x, _LOWER if low else _CARD.y, image)

@@ -9,8 +9,8 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.film import Patch
-from fuzzyq_bullet.video.story import off_goal_line
+from fuzzyq_bullet.video.explanation import off_goal_line
+from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.style import ACTION
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
@@ -21,31 +21,35 @@ _DIAL = (108, 122)
 _RADIUS = 84
 _FACTS = 226
 _ROW = 44
+_DECIDED: paint.Box = (6, 26, _FACTS - 4, ACTION.height - 6)
 _BAR: paint.Box = (60, 187, 126, 198)
 _WIDEST = math.radians(100.0)
 """A turn beyond this leaves the dial's needle at its end."""
 
 
+@register_panel("action", title="4  ACTS", place=ACTION)
 class Action:
     """Panel 4 of one run."""
 
-    def __init__(self, trajectory: Trajectory) -> None:
+    def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
+        self._canvas = canvas
         self._decisions = trajectory.decisions
         self._positions = trajectory.ticks.position
         self._goal = trajectory.scenario.goal.position
         steps = trajectory.decisions.step
         known = steps[np.isfinite(steps)]
         self._longest = max(float(known.max()) if known.size else 0.0, 1e-6)
-        card = paint.card(ACTION, "4  ACTS")
+        card = canvas.image
         card.paste(style.LINE, mask=paint.mask((0, 0, *ACTION.size), _dial_face))
         paint.write(card, (14, 199), "step", style.MUTED, 17)
         for row, name in enumerate(("speed", "to the goal", "nearest thing", "weights ω")):
             paint.write(card, (_FACTS, 40 + _ROW * row), name, style.MUTED, 16)
-        self._card = card
-        self._shown: list[object] = []
+        self._undecided = card.crop(_DECIDED)
+        self._shown: list[object] = [None] * 5
 
-    def draw(self, moment: Moment, index: int) -> list[Patch]:
-        """Return what changed since last time: what is, and what decision ``index`` wants."""
+    def draw(self, moment: Moment) -> None:
+        """Draw what is, and what the decision shown wants."""
+        index = moment.shown
         weights = (math.nan, math.nan)
         turn = step = math.nan
         if index != NO_DECISION:
@@ -60,30 +64,22 @@ class Action:
             "–" if math.isnan(sum(weights)) else f"{weights[0]:.2f} · {weights[1]:.2f}",
         )
         decided = (turn, step) if math.isfinite(turn) else None
-        fresh = not self._shown
-        before = self._shown or [None] * (len(facts) + 1)
-        self._shown = [*facts, decided]
-        patches = [Patch(ACTION.x, ACTION.y, self._card)] if fresh else []
+        before, self._shown = self._shown, [*facts, decided]
         for row, (fact, old) in enumerate(zip(facts, before, strict=False)):
             if fact != old:
-                patches.append(self._fact(row, fact))
+                self._draw_fact(row, fact)
         if decided is not None and decided != before[-1]:
-            patches.append(self._decided(turn, step))
-        return patches
+            image = self._undecided.copy()
+            _draw_turn(image, _DECIDED, turn)
+            self._draw_step(image, _DECIDED, step)
+            self._canvas.paste(image, _DECIDED[:2])
 
-    def _fact(self, row: int, fact: str) -> Patch:
+    def _draw_fact(self, row: int, fact: str) -> None:
         top = 46 + _ROW * row
         image = Image.new("RGB", (ACTION.width - _FACTS - 4, 22), style.CARD)
         text, size = style.fitting(fact, image.width, (24, 22, 20), bold=True)
         paint.write(image, (0, 64 + _ROW * row - top), text, style.TEXT, size, bold=True)
-        return Patch(ACTION.x + _FACTS, ACTION.y + top, image)
-
-    def _decided(self, turn: float, step: float) -> Patch:
-        box = (6, 26, _FACTS - 4, ACTION.height - 6)
-        image = self._card.crop(box)
-        _draw_turn(image, box, turn)
-        self._draw_step(image, box, step)
-        return Patch(ACTION.x + box[0], ACTION.y + box[1], image)
+        self._canvas.paste(image, (_FACTS, top))
 
     def _turn(self, index: int) -> float:
         """Return the decided turn (rad) away from the middle line, else from the goal."""
