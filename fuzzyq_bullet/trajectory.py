@@ -20,7 +20,7 @@ from fuzzyq_bullet.archive import read_arrays
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.planning.base import MODES
-from fuzzyq_bullet.scenario.models import ANY_PLANNER, Scenario
+from fuzzyq_bullet.scenario.models import ANY_NAME, Scenario
 
 Floats: TypeAlias = NDArray[np.float64]
 Outcome: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
@@ -219,7 +219,7 @@ class Trajectory:
             shown = repr(form)[:20]
             raise UserError(f"{path}: a record of format {shown}; this version reads {FORMAT}")
         try:
-            head = _Head.model_validate(meta, context=ANY_PLANNER)
+            head = _Head.model_validate(meta, context=ANY_NAME)
             ticks = Ticks(**_columns(arrays, "ticks", Ticks))
             decisions = Decisions(**_columns(arrays, "decisions", Decisions))
             _check(ticks, decisions)

@@ -22,7 +22,7 @@ from fuzzyq_bullet.errors import PlannerError
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.planning.validation import DecisionError, checked
 from fuzzyq_bullet.scenario import Expect, parse_scenario
-from fuzzyq_bullet.verdict import missed
+from fuzzyq_bullet.scenario.expectations import unmet_expectations
 
 PLUGIN = Path(__file__).with_name("planners_gone_wrong.py")
 
@@ -205,7 +205,7 @@ def test_a_jump_is_as_near_to_things_as_its_whole_way() -> None:
     with Sight(scenario.obstacles, scenario.arena) as world:
         result = result_of(run_in(world, scenario, Jumper()))  # type: ignore[arg-type]
     assert (result.outcome, result.steps, result.min_clearance_m) == ("goal", 1, 0.05)
-    assert missed(Expect(min_clearance=0.06), result)
+    assert unmet_expectations(Expect(min_clearance=0.06), result)
 
 
 def test_a_planner_that_ends_the_process_of_a_run_is_no_success(
@@ -360,13 +360,13 @@ def test_a_clearance_that_is_missing_or_no_number_or_negative_meets_nothing(
 ) -> None:
     result = result_of(run(parse_scenario(SIMPLE)))
     result = result.model_copy(update={"min_clearance_m": clearance})
-    assert len(missed(Expect(min_clearance=0.1), result)) == 1
-    assert missed(Expect(), result) == []
+    assert len(unmet_expectations(Expect(min_clearance=0.1), result)) == 1
+    assert unmet_expectations(Expect(), result) == []
 
 
 def test_a_time_that_is_no_number_meets_nothing() -> None:
     result = result_of(run(parse_scenario(SIMPLE))).model_copy(update={"time_s": math.nan})
-    assert len(missed(Expect(max_time=100.0), result)) == 1
+    assert len(unmet_expectations(Expect(max_time=100.0), result)) == 1
 
 
 def test_with_nothing_to_keep_clear_of_a_clearance_is_not_met(inside: Call, tmp_path: Path) -> None:

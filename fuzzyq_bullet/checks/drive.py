@@ -12,7 +12,7 @@ from fuzzyq_bullet.early_warnings import NO_WAY, early_warnings
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.metrics import Result, has_way, result_of
 from fuzzyq_bullet.scenario import Scenario, load_scenario, realise, with_options
-from fuzzyq_bullet.verdict import missed
+from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from fuzzyq_bullet.wording import error_in_words
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ def drive(job: Job) -> Verdict:
 def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
     """Return the verdict with what the run came to, and why it was not what was expected."""
     expect = trajectory.scenario.expect
-    misses = missed(expect, result)
-    update = {"expect": expect, "result": result}
+    misses = unmet_expectations(expect, result)
+    update = {"expect": expect.model_dump(mode="json"), "result": result}
     if not misses:
         return verdict.model_copy(update=update)
     source = Source(verdict.file)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from fuzzyq_bullet.checks.verdict import Touch
-from fuzzyq_bullet.contact import name_of, plain, touch_in_words
+from fuzzyq_bullet.collision_text import name_of, plain, touch_in_words
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree

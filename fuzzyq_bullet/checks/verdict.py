@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict
 
 from fuzzyq_bullet.metrics import Result
-from fuzzyq_bullet.scenario import Expect
 
 Status: TypeAlias = Literal["passed", "failed", "broken", "invalid"]
 Keep: TypeAlias = Literal["failed", "all", "none"]
@@ -104,7 +103,7 @@ class Verdict(BaseModel):
     touch: Touch | None = None
     replay: str = ""
     changes: list[str] = []
-    expect: Expect | None = None
+    expect: dict[str, Any] | None = None
     result: Result | None = None
     record: str | None = None
     video: str | None = None

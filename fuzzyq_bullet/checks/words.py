@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fuzzyq_bullet.checks.verdict import Verdict
-from fuzzyq_bullet.contact import plain
+from fuzzyq_bullet.collision_text import plain
 from fuzzyq_bullet.errors import printable
 
 AGAIN = "      again: "

@@ -73,7 +73,7 @@ def run(
     from fuzzyq_bullet import episode
     from fuzzyq_bullet.early_warnings import early_warnings
     from fuzzyq_bullet.metrics import result_of
-    from fuzzyq_bullet.verdict import missed
+    from fuzzyq_bullet.scenario.expectations import unmet_expectations
 
     for warning in early_warnings(scenario, asked, task):
         say(f"warning: {warning}")
@@ -97,7 +97,7 @@ def run(
         film(trajectory, mp4, speed)
     if json:
         typer.echo(result.model_dump_json(indent=2))
-    misses = missed(task.expect, result)
+    misses = unmet_expectations(task.expect, result)
     _summarise(result, misses, trajectory, listed=len(asked.obstacles))
     for path in written:
         say(f"  {path}")
@@ -120,7 +120,7 @@ def _with_options(scenario: Scenario, **options: Any) -> Scenario:
 def _summarise(
     result: Result, misses: Sequence[str], trajectory: Trajectory, *, listed: int
 ) -> None:
-    from fuzzyq_bullet.contact import plain
+    from fuzzyq_bullet.collision_text import plain
 
     clearance = result.min_clearance_m
     near = "nothing near" if clearance is None else f"least clearance {plain(clearance, 3)} m"
@@ -144,7 +144,7 @@ def touched(trajectory: Trajectory, listed: int) -> str:
         trajectory: The record of the run.
         listed: How many of its obstacles, the first ones, are in the scenario file.
     """
-    from fuzzyq_bullet.contact import name_of, touch_in_words
+    from fuzzyq_bullet.collision_text import name_of, touch_in_words
 
     collision = trajectory.collision
     if collision is None:

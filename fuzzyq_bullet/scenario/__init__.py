@@ -1,6 +1,7 @@
 """What a run is asked to do: models, files, checks, layouts."""
 
 from fuzzyq_bullet.scenario.checks import check, find_conflicts
+from fuzzyq_bullet.scenario.expectations import Expect, OutcomeName, register_expectation
 from fuzzyq_bullet.scenario.files import (
     bundled_scenarios,
     dump_scenario,
@@ -18,11 +19,9 @@ from fuzzyq_bullet.scenario.models import (
     Box,
     Cylinder,
     Drive,
-    Expect,
     Goal,
     Limits,
     Obstacle,
-    OutcomeName,
     Random,
     Robot,
     Scenario,
@@ -58,6 +57,7 @@ __all__ = [
     "parse_scenario",
     "random_task",
     "realise",
+    "register_expectation",
     "save_scenario",
     "scenario_schema",
     "with_options",

@@ -16,6 +16,7 @@ from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
 from fuzzyq_bullet.planning.settings import PlannerSettings
+from fuzzyq_bullet.scenario.expectations import ANY_NAME, AnyExpect, Expect, OutcomeName
 from fuzzyq_bullet.scenario.layouts.registry import AnyLayout
 from fuzzyq_bullet.scenario.layouts.scatter import Random
 from fuzzyq_bullet.scenario.shapes import (
@@ -35,7 +36,6 @@ from fuzzyq_bullet.scenario.shapes import (
 )
 
 Drive: TypeAlias = Literal["wheels", "kinematic"]
-OutcomeName: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
 
 
 class Arena(Model):
@@ -92,24 +92,10 @@ class Limits(Model):
     )
 
 
-class Expect(Model):
-    """What CI holds the run to."""
-
-    outcome: OutcomeName = "goal"
-    min_clearance: Annotated[Number, Field(ge=0.0)] | None = Field(
-        default=None, description="Least distance to anything (m)."
-    )
-    max_time: Annotated[Number, Field(gt=0.0)] | None = Field(
-        default=None, description="Longest simulated time (s)."
-    )
-
-
 def _default_planner() -> PlannerSettings:
     return settings_for(DEFAULT_PLANNER).model_validate({"name": DEFAULT_PLANNER})
 
 
-ANY_PLANNER = "any planner"
-"""Context of a validation that takes a planner nobody registered here, as a mere name."""
 _LONGEST_NAME = 100
 
 
@@ -131,7 +117,7 @@ def _choose_planner(value: Any, info: ValidationInfo) -> Any:
         return value  # a mistake that pydantic names
     name = value.get("name", DEFAULT_PLANNER)
     if name not in planner_names():
-        if info.context == ANY_PLANNER and isinstance(name, str) and len(name) <= _LONGEST_NAME:
+        if info.context == ANY_NAME and isinstance(name, str) and len(name) <= _LONGEST_NAME:
             return PlannerSettings(name=name)
         mistake = PydanticCustomError(
             "unknown_planner",
@@ -166,7 +152,7 @@ class Scenario(Model):
         default=None, description="Obstacles to be drawn; without a layout, scattered."
     )
     limits: Limits = Limits()
-    expect: Expect = Expect()
+    expect: AnyExpect = Expect()
 
     def start_heading(self) -> float:
         """Return the heading at the start (rad); towards the goal when none is given."""
@@ -178,7 +164,7 @@ class Scenario(Model):
 
 
 __all__ = [
-    "ANY_PLANNER",
+    "ANY_NAME",
     "MAX_OBSTACLES",
     "MIN_RADIUS",
     "ROBOT_RADIUS",

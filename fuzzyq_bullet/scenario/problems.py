@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from pydantic import BaseModel, ValidationError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner_names, settings_for
+from fuzzyq_bullet.scenario.expectations import expect_model
 from fuzzyq_bullet.scenario.models import Obstacle, Scenario
 from fuzzyq_bullet.scenario.shapes import ANGLE_KEYS
 from fuzzyq_bullet.wording import did_you_mean, shorten
@@ -193,6 +194,8 @@ def _keys_at(loc: Loc, data: Any) -> list[str]:
         given = data.get("planner") if isinstance(data, dict) else None
         name = given.get("name", DEFAULT_PLANNER) if isinstance(given, dict) else given
         here, loc = [settings_for(str(name))], loc[1:]
+    if loc[:1] == ("expect",):
+        here, loc = [expect_model()], loc[1:]
     for part in loc:
         inner = [
             found

@@ -7,6 +7,7 @@ from typing import Any
 from pydantic.json_schema import models_json_schema
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
+from fuzzyq_bullet.scenario.expectations import expect_model
 from fuzzyq_bullet.scenario.models import Scenario
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -41,5 +42,6 @@ def scenario_schema() -> dict[str, Any]:
         "description": planner.get("description", ""),
         "anyOf": choices,
     }
+    definitions["Expect"] = expect_model().model_json_schema()
     definitions.pop("PlannerSettings", None)
     return {"$schema": DIALECT, **scenario, "title": "Scenario", "$defs": definitions}
