@@ -3,6 +3,21 @@
 from __future__ import annotations
 
 from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.trajectory import Trajectory
+
+
+def collision_text(trajectory: Trajectory, listed: int) -> str:
+    """Say what the robot touched, where and when; nothing if it touched nothing.
+
+    Args:
+        trajectory: The record of the run.
+        listed: How many of its obstacles, the first ones, are in the scenario file.
+    """
+    collision = trajectory.collision
+    if collision is None:
+        return ""
+    what = name_of(trajectory.scenario, collision.obstacle, listed)
+    return touch_in_words(what, collision.point, collision.time)
 
 
 def name_of(scenario: Scenario, index: int, listed: int) -> str:

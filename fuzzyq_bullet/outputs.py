@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -35,6 +36,21 @@ def run_name(given: Scenario, asked: Scenario) -> str:
     if asked.seed != given.seed:
         parts.append(f"seed{asked.seed}")
     return "-".join(parts)
+
+
+def film_name(name: str, speed: float) -> str:
+    """Return ``NAME.mp4``, or ``NAME-4x.mp4``: a film at another speed replaces no other."""
+    factor = f"{speed:g}"
+    return f"{name}.mp4" if factor == "1" else f"{name}-{factor}x.mp4"
+
+
+def films_of(folder: Path, name: str) -> list[Path]:
+    """Return the films in a folder that ``film_name`` gives this name, at whatever speed."""
+    films = re.compile(rf"{re.escape(name)}(-[0-9.]+x)?\.mp4")
+    try:
+        return sorted(path for path in folder.iterdir() if films.fullmatch(path.name))
+    except OSError:  # a folder that may be written to, and not be looked into
+        return []
 
 
 def scenario_inputs(source: str | os.PathLike[str], scenario: Scenario) -> list[Path]:

@@ -17,10 +17,10 @@ import pytest
 from conftest import Call
 from lxml import etree
 
-from fuzzyq_bullet.checks.collect import find
+from fuzzyq_bullet.checks.baseline import BaselineRun, compare, this_platform
 from fuzzyq_bullet.checks.crew import Crew
-from fuzzyq_bullet.checks.junit import junit_xml
-from fuzzyq_bullet.checks.record import Entry, compare, this_platform
+from fuzzyq_bullet.checks.plan import discover
+from fuzzyq_bullet.checks.reports import junit_xml
 from fuzzyq_bullet.checks.verdict import Job, Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.resources import data_folder
@@ -356,7 +356,7 @@ def test_a_folder_that_cannot_be_read_is_told_and_the_others_are_looked_into(
         return scan(path)
 
     monkeypatch.setattr(os, "scandir", refuse)
-    found = find([str(tmp_path)])
+    found = discover([str(tmp_path)])
     assert found.files == [tmp_path / "a" / "good.yaml"]
     assert found.problems == [f"{tmp_path / 'locked'}: cannot be read: Permission denied"]
 
@@ -409,7 +409,7 @@ def test_digests_count_on_one_platform_only(verdicts: dict[str, Verdict]) -> Non
     now = verdicts["good"].result
     assert now is not None
     then = now.model_copy(update={"digest": "0" * 32})
-    here = Entry(file="good.yaml", platform=this_platform(), result=then)
+    here = BaselineRun(file="good.yaml", platform=this_platform(), result=then)
     assert "another trajectory" in compare(here, now)[0]
     assert not compare(here.model_copy(update={"platform": "another"}), now)
     assert not compare(here.model_copy(update={"result": now}), now)

@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 
 from fuzzyq_bullet import __version__
 from fuzzyq_bullet.cli.app import app
-from fuzzyq_bullet.cli.run import touched
+from fuzzyq_bullet.collision_text import collision_text
 from fuzzyq_bullet.trajectory import Collision, Trajectory
 
 RESULT_KEYS = [
@@ -153,8 +153,8 @@ def test_a_collision_says_what_was_touched_where_and_when(
 def test_what_was_touched_is_named(obstacle: int, listed: int, what: str, filmed: Path) -> None:
     record = Trajectory.load(filmed / "short.npz")
     collision = Collision(time=9.31, point=(-1e-9, 2.5), obstacle=obstacle, normal_force=1.0)
-    assert touched(replace(record, collision=collision), listed) == what
-    assert touched(record, listed) == ""
+    assert collision_text(replace(record, collision=collision), listed) == what
+    assert collision_text(record, listed) == ""
 
 
 def test_options_take_the_place_of_what_the_scenario_says(

@@ -401,7 +401,7 @@ def test_nothing_to_drive_is_no_success(inside: Call, tmp_path: Path) -> None:
 def test_a_folder_that_is_linked_is_looked_into_once() -> None:
     import tempfile
 
-    from fuzzyq_bullet.checks.collect import find
+    from fuzzyq_bullet.checks.plan import discover
 
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -410,7 +410,7 @@ def test_a_folder_that_is_linked_is_looked_into_once() -> None:
         (folder / "real" / "back").symlink_to("..")
         (folder / "tests").mkdir()
         (folder / "tests" / "link").symlink_to("../real")
-        found = find([str(folder / "tests")])
+        found = discover([str(folder / "tests")])
         assert [file.name for file in found.files] == ["a.yaml"]
         assert found.problems == []
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeAlias, TypeVar
 
-from fuzzyq_bullet.checks.replay import MEMORY_MB, TIMEOUT, check_command, replay_command
+from fuzzyq_bullet.checks.text import MEMORY_MB, TIMEOUT, check_command, replay_command
 from fuzzyq_bullet.checks.verdict import FilmJob, Job, Verdict
 from fuzzyq_bullet.checks.worker import COMMAND
 from fuzzyq_bullet.errors import UserError

@@ -60,14 +60,14 @@ def main(settings: dict[str, Any]) -> None:
         except BrokenPipeError:  # whoever asked is gone
             os._exit(1)
 
-    from fuzzyq_bullet.checks.plugins import load_plugins
     from fuzzyq_bullet.errors import UserError
     from fuzzyq_bullet.files import own_parts
+    from fuzzyq_bullet.plugins import load_plugins
 
     own_parts(settings["name"])
     try:
         load_plugins(settings["plugins"])
-        from fuzzyq_bullet.checks import drive
+        from fuzzyq_bullet.checks import run_job
     except UserError as error:
         answer(unable=list(error.problems))
         return
@@ -80,13 +80,13 @@ def main(settings: dict[str, Any]) -> None:
         _end_within(int(order["timeout"]) + GRACE)
         if "film" in order:
             try:
-                drive.make_film(FilmJob.model_validate(order["film"]))
+                run_job.make_film(FilmJob.model_validate(order["film"]))
                 answer(filmed=True, order=order["order"])
             except (UserError, MemoryError) as error:
                 answer(filmed=False, why=str(error) or "out of memory", order=order["order"])
         else:
             job = Job.model_validate(order["job"])
-            verdict = drive.drive(job)
+            verdict = run_job.run_job(job)
             retire = _resident() > RETIRE_AT * limit
             answer(verdict=verdict.model_dump(mode="json"), retire=retire, order=order["order"])
         _end_within(0)

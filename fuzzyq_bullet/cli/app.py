@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzyq_bullet.cli import bench, check, explain, figure, replay, report, run, scenarios, train
-from fuzzyq_bullet.cli.words import help_of
+from fuzzyq_bullet.cli import bench, check, explain, figure, report, run, scenarios, train
+from fuzzyq_bullet.cli.options import help_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
 
@@ -32,7 +32,7 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 
 
 _add("run", run.run)
-_add("replay", replay.replay)
+_add("replay", run.replay)
 _add("check", check.check)
 _add("validate", scenarios.validate)
 _add("schema", scenarios.schema)

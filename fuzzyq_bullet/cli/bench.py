@@ -10,8 +10,7 @@ from fuzzyq_bullet.cli.bench_escape import escape
 from fuzzyq_bullet.cli.bench_learning import learning
 from fuzzyq_bullet.cli.bench_steps import steps
 from fuzzyq_bullet.cli.bench_success import success
-from fuzzyq_bullet.cli.sharing import Json
-from fuzzyq_bullet.cli.words import help_of
+from fuzzyq_bullet.cli.options import Json, help_of
 
 app = typer.Typer(help="Measure the project itself.", no_args_is_help=True)
 

@@ -7,9 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.folder import FOLDER
-from fuzzyq_bullet.cli.plugin import PluginOption
-from fuzzyq_bullet.cli.sharing import Jobs, Json, Runs, SweepSeed
+from fuzzyq_bullet.cli.options import FOLDER, Jobs, Json, PluginOption, Runs, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
 

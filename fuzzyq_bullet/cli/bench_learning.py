@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.folder import FOLDER
-from fuzzyq_bullet.cli.sharing import Jobs, Json, SweepSeed
+from fuzzyq_bullet.cli.options import FOLDER, Jobs, Json, SweepSeed
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:

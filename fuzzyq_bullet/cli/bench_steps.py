@@ -7,9 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fuzzyq_bullet.cli.folder import FOLDER
-from fuzzyq_bullet.cli.plugin import PluginOption
-from fuzzyq_bullet.cli.sharing import Backend, Jobs, Json, Scheduler, SweepSeed
+from fuzzyq_bullet.cli.options import (
+    FOLDER,
+    Backend,
+    Jobs,
+    Json,
+    PluginOption,
+    Scheduler,
+    SweepSeed,
+)
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:

@@ -7,9 +7,16 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.folder import FOLDER
-from fuzzyq_bullet.cli.plugin import PluginOption
-from fuzzyq_bullet.cli.sharing import Backend, Jobs, Json, Runs, Scheduler, SweepSeed
+from fuzzyq_bullet.cli.options import (
+    FOLDER,
+    Backend,
+    Jobs,
+    Json,
+    PluginOption,
+    Runs,
+    Scheduler,
+    SweepSeed,
+)
 from fuzzyq_bullet.errors import UserError
 
 COUNTS = ",".join(map(str, range(5, 130, 5)))

@@ -14,15 +14,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.film import ReplaceOption
-from fuzzyq_bullet.cli.folder import FILE, FOLDER
-from fuzzyq_bullet.cli.plugin import PluginOption
+from fuzzyq_bullet.cli.options import FILE, FOLDER, PluginOption, ReplaceOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable
 
-    from fuzzyq_bullet.checks.crew import Crew
     from fuzzyq_bullet.checks.verdict import Verdict
 
 
@@ -87,14 +84,12 @@ def check(
     Raises:
         UserError: If an option is wrong, or there is no scenario.
     """
-    from fuzzyq_bullet.checks.collect import find
+    from fuzzyq_bullet.checks.baseline import Baselines, baselines_beside, refuse_bundled
     from fuzzyq_bullet.checks.crew import Crew
-    from fuzzyq_bullet.checks.github import harmless, problem_command
-    from fuzzyq_bullet.checks.junit import junit_xml
-    from fuzzyq_bullet.checks.plan import Plan, planned
-    from fuzzyq_bullet.checks.record import Records, records_beside
-    from fuzzyq_bullet.checks.report import as_json
-    from fuzzyq_bullet.checks.words import summary
+    from fuzzyq_bullet.checks.plan import Plan, discover, planned
+    from fuzzyq_bullet.checks.reports import as_json, harmless, junit_xml, problem_command
+    from fuzzyq_bullet.checks.session import Session, make_films
+    from fuzzyq_bullet.checks.text import summary
     from fuzzyq_bullet.cli.console import say
     from fuzzyq_bullet.cli.process import say_error
     from fuzzyq_bullet.files import refuse_inputs, writable_files, writable_folder, write_text
@@ -104,8 +99,8 @@ def check(
     if record and strict:
         raise UserError("--record and --strict exclude each other: one notes, the other compares")
     if record:
-        _refuse_bundled(paths)
-    found = find(paths)
+        refuse_bundled(paths)
+    found = discover(paths)
     if video is not Video.none:
         writable_folder(out)
     with tempfile.TemporaryDirectory(prefix="fuzzyq-check-") as kept:
@@ -121,31 +116,26 @@ def check(
         if junit is not None:
             writable_files(junit.parent, [junit.name])  # what cannot be is told before the work
             written.append(junit)
-        inputs = [*plan.inputs, *plugin_inputs(plugin or []), *records_beside(plan.inputs)]
+        inputs = [*plan.inputs, *plugin_inputs(plugin or []), *baselines_beside(plan.inputs)]
         refuse_inputs(written, inputs)
         begun = time.monotonic()
-        records = Records()
+        baselines = Baselines()
         show = _printer(json=json, github=github, width=max(len(job.name) for job in plan.jobs))
 
-        def settle(verdict: Verdict) -> None:
-            if not record:
-                verdict.changes = records.changes(verdict)
-                if strict and verdict.changes and verdict.status == "passed":
-                    verdict.status = "failed"
-                    verdict.why = ["behaves otherwise than recorded (--strict)"]
-            if verdict.record is not None:
-                _put_away(verdict, None if _is_dropped(verdict, video) else out, replace=replace)
-            show(verdict)
-
+        session = Session(None if record else baselines, strict, video.value, out, replace)
+        verdicts = []
         with Crew(jobs or cores(), plugins=plugin or [], timeout=timeout, memory_mb=memory) as crew:
-            verdicts = _settled(crew.check(plan.jobs), settle)
-            _make_films(crew, verdicts, say)
+            for verdict in session.settled(crew.check(plan.jobs)):
+                verdicts.append(verdict)
+                show(verdict)
+            for line in make_films(crew, verdicts):
+                say(line)
     if record:
-        for path in records.write(verdicts):
+        for path in baselines.write(verdicts):
             say(f"recorded in {path}")
-    if strict and records.missing:
-        say(f"{records.missing} not compared: not recorded yet (fuzzyq check --record)")
-    problems += records.problems
+    if strict and baselines.missing:
+        say(f"{baselines.missing} not compared: not recorded yet (fuzzyq check --record)")
+    problems += baselines.problems
     for problem in problems:
         say_error(harmless(problem) if github else problem)
         if github:
@@ -162,55 +152,10 @@ def check(
         raise typer.Exit(1)
 
 
-def _settled(
-    finished: Iterable[tuple[int, Verdict]], settle: Callable[[Verdict], None]
-) -> list[Verdict]:
-    """Return verdicts in the order asked for, each settled as soon as all before it are."""
-    verdicts: list[Verdict] = []
-    waiting: dict[int, Verdict] = {}
-    for i, verdict in finished:
-        waiting[i] = verdict
-        while len(verdicts) in waiting:
-            verdicts.append(waiting.pop(len(verdicts)))
-            settle(verdicts[-1])
-    return verdicts
-
-
-def _is_dropped(verdict: Verdict, video: Video) -> bool:
-    return video is Video.failed and verdict.status == "passed"
-
-
-def _put_away(verdict: Verdict, folder: Path | None, *, replace: bool) -> None:
-    """Move the record of a run to where it is kept; without a folder it is removed.
-
-    It takes the place of one of the same run alone. That it cannot be kept changes no verdict.
-    """
-    from fuzzyq_bullet.files import written_beside
-    from fuzzyq_bullet.outputs import refuse_other_run
-    from fuzzyq_bullet.trajectory import Trajectory
-
-    source = Path(str(verdict.record))
-    verdict.record = None
-    try:
-        if folder is None:
-            return
-        target = folder / source.name
-        if not replace:
-            film = target.with_suffix(".mp4")
-            refuse_other_run(target, [film], Trajectory.load(source).scenario)
-        with written_beside(target) as part:
-            shutil.copyfile(source, part)
-        verdict.record = str(target)
-    except UserError as error:
-        verdict.no_film = str(error)
-    finally:
-        source.unlink(missing_ok=True)
-
-
 def _printer(*, json: bool, github: bool, width: int) -> Callable[[Verdict], None]:
     """Return what prints a verdict: on stdout, or on stderr where stdout is for JSON alone."""
-    from fuzzyq_bullet.checks.github import harmless, verdict_commands
-    from fuzzyq_bullet.checks.words import lines_of
+    from fuzzyq_bullet.checks.reports import harmless, verdict_commands
+    from fuzzyq_bullet.checks.text import lines_of
 
     terminal = (sys.stderr if json else sys.stdout).isatty()
 
@@ -231,7 +176,7 @@ def _fitted(lines: list[str]) -> list[str]:
 
     Not so the command to copy, which the terminal itself breaks where it must.
     """
-    from fuzzyq_bullet.checks.words import AGAIN
+    from fuzzyq_bullet.checks.text import AGAIN
 
     mark, rest = lines[0][:5], lines[0][5:]
     if not os.environ.get("NO_COLOR"):
@@ -250,40 +195,3 @@ def _fitted(lines: list[str]) -> list[str]:
             break_on_hyphens=False,
         )
     return told
-
-
-def _refuse_bundled(paths: Sequence[str]) -> None:
-    """Make sure that --record is not asked to write beside what is bundled.
-
-    Raises:
-        UserError: If one of the paths is the name of a bundled scenario, and no file.
-    """
-    from fuzzyq_bullet.resources import data_folder
-
-    bundled = {file.stem: file for file in data_folder("scenarios").glob("*.yaml")}
-    for path in paths:
-        if path in bundled and not os.path.exists(path):  # noqa: PTH110 - a long name is no error
-            raise UserError(
-                f"{path}: --record notes beside the scenario, and this one is bundled with the "
-                f"package; copy {bundled[path]} to a folder of your own"
-            )
-
-
-def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None]) -> None:
-    """Make the films of all runs whose record was kept; a film that fails changes no verdict."""
-    from fuzzyq_bullet.checks.verdict import FilmJob
-
-    kept = [verdict for verdict in verdicts if verdict.record]
-    films = [
-        FilmJob(
-            record=str(verdict.record), video=str(Path(str(verdict.record)).with_suffix(".mp4"))
-        )
-        for verdict in kept
-    ]
-    for i, why in crew.film(films):
-        if why:
-            kept[i].no_film = why
-            say(f"no film {films[i].video}: {why}")
-        else:
-            kept[i].video = films[i].video
-            say(f"film {films[i].video}")

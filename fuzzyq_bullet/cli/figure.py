@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.folder import FOLDER
-from fuzzyq_bullet.cli.plugin import PluginOption
+from fuzzyq_bullet.cli.options import FOLDER, PluginOption
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.figures import FIGURES, drawing
 

@@ -8,9 +8,7 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.folder import FILE
-from fuzzyq_bullet.cli.plugin import PluginOption
-from fuzzyq_bullet.cli.sharing import Jobs
+from fuzzyq_bullet.cli.options import FILE, Jobs, PluginOption
 
 
 def report(

@@ -1,4 +1,4 @@
-"""``fuzzyq run``: one scenario, driven, recorded and explained."""
+"""``fuzzyq run`` and ``replay``: a scenario driven, recorded and filmed; a record filmed again."""
 
 from __future__ import annotations
 
@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fuzzyq_bullet.cli.console import progress_bar, say
-from fuzzyq_bullet.cli.film import ReplaceOption, SpeedOption, film, film_name, films_of
-from fuzzyq_bullet.cli.folder import FOLDER
-from fuzzyq_bullet.cli.plugin import PluginOption
+from fuzzyq_bullet.cli.options import FOLDER, PluginOption, ReplaceOption, SpeedOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -50,7 +48,14 @@ def run(
     """
     # What takes long to load waits until the scenario is known to be right.
     from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
-    from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run, run_name, scenario_inputs
+    from fuzzyq_bullet.outputs import (
+        film_name,
+        films_of,
+        plugin_inputs,
+        refuse_other_run,
+        run_name,
+        scenario_inputs,
+    )
     from fuzzyq_bullet.scenario import load_scenario, realise
 
     given = load_scenario(scenario, policies=planner is None)  # another planner has its own
@@ -94,7 +99,7 @@ def run(
     trajectory.save(npz)
     write_text(result_file, result.model_dump_json(indent=2) + "\n")
     if video:
-        film(trajectory, mp4, speed)
+        _film(trajectory, mp4, speed)
     if json:
         typer.echo(result.model_dump_json(indent=2))
     misses = unmet_expectations(task.expect, result)
@@ -106,6 +111,55 @@ def run(
             say(f"{path} is of an earlier run")
     if misses:
         raise typer.Exit(1)
+
+
+def replay(
+    trajectory: Annotated[
+        Path, typer.Argument(metavar="TRAJECTORY", help="A record (.npz) written by a run.")
+    ],
+    *,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder to write into; by default that of the record.", **FOLDER),
+    ] = None,
+    speed: SpeedOption = 1.0,
+    plugin: PluginOption = None,
+    replace: ReplaceOption = False,
+) -> None:
+    """Make the video NAME.mp4 from a record, without running anything again.
+
+    At a speed other than 1 it is called by that: NAME-4x.mp4.
+
+    Raises:
+        UserError: If the record cannot be read, or the video cannot be written.
+    """
+    from fuzzyq_bullet.files import refuse_inputs, writable_files
+    from fuzzyq_bullet.outputs import film_name, plugin_inputs, refuse_other_run
+    from fuzzyq_bullet.trajectory import Trajectory
+
+    record = Trajectory.load(trajectory)
+    folder = out or trajectory.parent
+    (video,) = writable_files(folder, [film_name(trajectory.stem, speed)])
+    refuse_inputs([video], [trajectory, *plugin_inputs(plugin or [])])
+    if not replace and not folder.samefile(trajectory.parent):
+        refuse_other_run(folder / f"{trajectory.stem}.npz", [video], record.scenario)
+    typer.echo(_film(record, video, speed))
+
+
+def _film(trajectory: Trajectory, path: Path, speed: float) -> Path:
+    """Record the video, showing how far it is, and return its path."""
+    from fuzzyq_bullet.video import record
+
+    with progress_bar("filming") as (progress, bar):
+        record(
+            trajectory,
+            path,
+            speed=speed,
+            progress=lambda done, total: progress.update(
+                bar, completed=done, total=total, note=f"{done} of {total} frames"
+            ),
+        )
+    return path
 
 
 def _with_options(scenario: Scenario, **options: Any) -> Scenario:
@@ -120,7 +174,7 @@ def _with_options(scenario: Scenario, **options: Any) -> Scenario:
 def _summarise(
     result: Result, misses: Sequence[str], trajectory: Trajectory, *, listed: int
 ) -> None:
-    from fuzzyq_bullet.collision_text import plain
+    from fuzzyq_bullet.collision_text import collision_text, plain
 
     clearance = result.min_clearance_m
     near = "nothing near" if clearance is None else f"least clearance {plain(clearance, 3)} m"
@@ -130,24 +184,8 @@ def _summarise(
         f"({result.planner}, {result.drive}, seed {result.seed})",
         style="bold",
     )
-    contact = touched(trajectory, listed)
+    contact = collision_text(trajectory, listed)
     if contact:
         say(contact, style="bold")
     for miss in misses:
         say(f"not as expected: {miss}", style="bold")
-
-
-def touched(trajectory: Trajectory, listed: int) -> str:
-    """Say what the robot touched, where and when; nothing if it touched nothing.
-
-    Args:
-        trajectory: The record of the run.
-        listed: How many of its obstacles, the first ones, are in the scenario file.
-    """
-    from fuzzyq_bullet.collision_text import name_of, touch_in_words
-
-    collision = trajectory.collision
-    if collision is None:
-        return ""
-    what = name_of(trajectory.scenario, collision.obstacle, listed)
-    return touch_in_words(what, collision.point, collision.time)

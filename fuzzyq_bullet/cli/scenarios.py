@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.plugin import PluginOption
+from fuzzyq_bullet.cli.options import PluginOption
 from fuzzyq_bullet.errors import UserError
 
 

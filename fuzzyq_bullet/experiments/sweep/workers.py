@@ -12,10 +12,10 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias, TypeVar
 
-from fuzzyq_bullet.checks.plugins import load_plugins
 from fuzzyq_bullet.experiments.sweep.episode import Done
 from fuzzyq_bullet.experiments.sweep.jobs import Job
 from fuzzyq_bullet.experiments.sweep.rows import Row
+from fuzzyq_bullet.plugins import load_plugins
 
 Work: TypeAlias = Callable[[Job], Done]
 

@@ -16,6 +16,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes, write_text
 from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.platforms import pybullet_in_words
+from fuzzyq_bullet.resources import data_folder
 
 FILE = "check-record.json"
 """Its name, one in each folder that has scenarios."""
@@ -26,7 +27,7 @@ CLEARANCE = 0.01
 MAX_BYTES = 20_000_000
 
 
-class Entry(BaseModel):
+class BaselineRun(BaseModel):
     """One run, as it was.
 
     Attributes:
@@ -42,17 +43,17 @@ class Entry(BaseModel):
     result: Result
 
 
-class Record(BaseModel):
+class Baseline(BaseModel):
     """All runs recorded in a folder, by scenario, planner, drive and seed."""
 
     model_config = ConfigDict(extra="forbid")
 
     format: Literal[1] = 1
-    runs: dict[str, Entry] = {}
+    runs: dict[str, BaselineRun] = {}
 
 
-class Records:
-    """The records of all folders, read when first needed.
+class Baselines:
+    """The baselines of all folders, read when first needed.
 
     Attributes:
         problems: A line for each that cannot be read or written; the others do their work.
@@ -60,7 +61,7 @@ class Records:
     """
 
     def __init__(self) -> None:
-        self._records: dict[Path, Record | None] = {}
+        self._baselines: dict[Path, Baseline | None] = {}
         self.problems: list[str] = []
         self.missing = 0
 
@@ -76,24 +77,24 @@ class Records:
         return compare(entry, verdict.result)
 
     def write(self, verdicts: Sequence[Verdict]) -> list[Path]:
-        """Record the runs that passed, beside their scenarios; return what was written.
+        """Baseline the runs that passed, beside their scenarios; return what was written.
 
         Runs that were recorded before and are not among these stay, unless their file is gone.
         """
-        folders: dict[Path, Record] = {}
+        folders: dict[Path, Baseline] = {}
         for verdict in verdicts:
             file = Path(verdict.file)
             record = self._of(file.parent)
             if verdict.status != "passed" or verdict.result is None or record is None:
                 continue
             folders[file.parent] = record
-            record.runs[_key(verdict.result)] = Entry(
+            record.runs[_key(verdict.result)] = BaselineRun(
                 file=file.name, platform=this_platform(), result=verdict.result
             )
         written = []
         for folder, record in folders.items():
             kept = {k: e for k, e in sorted(record.runs.items()) if (folder / e.file).exists()}
-            text = Record(runs=kept).model_dump_json(indent=1)
+            text = Baseline(runs=kept).model_dump_json(indent=1)
             try:
                 write_text(folder / FILE, text + "\n")
                 written.append(folder / FILE)
@@ -101,37 +102,52 @@ class Records:
                 self.problems += error.problems
         return written
 
-    def _of(self, folder: Path) -> Record | None:
-        if folder not in self._records:
+    def _of(self, folder: Path) -> Baseline | None:
+        if folder not in self._baselines:
             try:
-                self._records[folder] = read(folder / FILE)
+                self._baselines[folder] = read(folder / FILE)
             except UserError as error:
-                self._records[folder] = None
+                self._baselines[folder] = None
                 self.problems += error.problems
-        return self._records[folder]
+        return self._baselines[folder]
 
 
-def records_beside(files: Sequence[Path]) -> list[Path]:
+def baselines_beside(files: Sequence[Path]) -> list[Path]:
     """Return where the records of scenario files are, or would be."""
     return [folder / FILE for folder in dict.fromkeys(file.parent for file in files)]
 
 
-def read(path: Path) -> Record:
+def refuse_bundled(paths: Sequence[str]) -> None:
+    """Make sure that --record is not asked to write beside what is bundled.
+
+    Raises:
+        UserError: If one of the paths is the name of a bundled scenario, and no file.
+    """
+    bundled = {file.stem: file for file in data_folder("scenarios").glob("*.yaml")}
+    for path in paths:
+        if path in bundled and not os.path.exists(path):  # noqa: PTH110 - a long name is no error
+            raise UserError(
+                f"{path}: --record notes beside the scenario, and this one is bundled with the "
+                f"package; copy {bundled[path]} to a folder of your own"
+            )
+
+
+def read(path: Path) -> Baseline:
     """Read a record; an empty one where there is none.
 
     Raises:
         UserError: If it cannot be read, or is none of this format.
     """
     if not os.path.lexists(path):
-        return Record()
+        return Baseline()
     content = read_bytes(path, what="a record of fuzzyq check --record", most=MAX_BYTES)
     try:
-        return Record.model_validate_json(content)
+        return Baseline.model_validate_json(content)
     except (ValidationError, ValueError) as error:
         raise UserError(f"{path}: not a record of fuzzyq check --record; delete it") from error
 
 
-def compare(entry: Entry, now: Result) -> list[str]:
+def compare(entry: BaselineRun, now: Result) -> list[str]:
     """Return what is otherwise than in an entry, a line each."""
     then, lines = entry.result, []
     if now.outcome != then.outcome:

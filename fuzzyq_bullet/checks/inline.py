@@ -6,10 +6,9 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.checks.drive import judge
-from fuzzyq_bullet.checks.replay import replay_command
+from fuzzyq_bullet.checks.run_job import judge
+from fuzzyq_bullet.checks.text import explanation, replay_command
 from fuzzyq_bullet.checks.verdict import Job, Verdict
-from fuzzyq_bullet.checks.words import explanation
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.metrics import Result, result_of
 from fuzzyq_bullet.planning.registry import settings_for

@@ -1,11 +1,18 @@
-"""A verdict in lines for people."""
+"""A verdict in lines for people, and the command that does it again."""
 
 from __future__ import annotations
 
-from fuzzyq_bullet.checks.verdict import Verdict
+import shlex
+from collections.abc import Sequence
+
+from fuzzyq_bullet.checks.verdict import Job, Verdict
 from fuzzyq_bullet.collision_text import plain
 from fuzzyq_bullet.errors import printable
 
+TIMEOUT = 120.0
+"""Wall-clock time (s) that one scenario may take, where nothing else is said."""
+MEMORY_MB = 2048
+"""Memory that one worker may use (MB), where nothing else is said."""
 AGAIN = "      again: "
 """What the command that replays a run begins with."""
 _MARKS = {"passed": "ok", "failed": "FAIL", "broken": "FAIL", "invalid": "ERROR"}
@@ -56,3 +63,47 @@ def summary(verdicts: list[Verdict], problems: int, seconds: float) -> str:
     changed = sum(bool(verdict.changes) for verdict in verdicts)
     parts += [f"{changed} changed"] if changed else []
     return f"{', '.join(parts)} in {seconds:.1f} s"
+
+
+def replay_command(job: Job, plugins: Sequence[str] = ()) -> str:
+    """Return a line for the shell, which also leaves a film.
+
+    Args:
+        job: What was driven.
+        plugins: Modules it needs.
+    """
+    return shlex.join(["fuzzyq", "run", *_arguments(job, plugins)])
+
+
+def check_command(
+    job: Job,
+    plugins: Sequence[str] = (),
+    *,
+    timeout: float = TIMEOUT,
+    memory_mb: int = MEMORY_MB,
+) -> str:
+    """Return a line for the shell that does it again within bounds, for what crashes or hangs.
+
+    Args:
+        job: What was driven.
+        plugins: Modules it needs.
+        timeout: Wall-clock time (s) that it had.
+        memory_mb: Memory (MB) that it had.
+    """
+    arguments = ["fuzzyq", "check", *_arguments(job, plugins)]
+    if timeout != TIMEOUT:
+        arguments += ["--timeout", f"{timeout:g}"]
+    if memory_mb != MEMORY_MB:
+        arguments += ["--memory", str(memory_mb)]
+    return shlex.join(arguments)
+
+
+def _arguments(job: Job, plugins: Sequence[str]) -> list[str]:
+    arguments = [f"./{job.file}" if job.file.startswith("-") else job.file]
+    for plugin in plugins:
+        arguments += ["--plugin", plugin]
+    for option in ("planner", "seed", "drive"):
+        value = getattr(job, option)
+        if value is not None:
+            arguments += [f"--{option}", str(value)]
+    return arguments

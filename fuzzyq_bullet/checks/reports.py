@@ -1,0 +1,158 @@
+"""Verdicts for programs: JSON, JUnit XML, and annotations of GitHub's."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import re
+from collections.abc import Sequence
+from datetime import datetime, timezone
+from pathlib import Path
+from xml.etree import ElementTree
+
+from fuzzyq_bullet.checks.text import explanation, lines_of
+from fuzzyq_bullet.checks.verdict import Verdict
+from fuzzyq_bullet.version import __version__
+
+_PLACE = re.compile(r"(?P<file>[^:\n]+\.ya?ml)(:(?P<line>\d+))?: ")
+_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 cannot hold, not even escaped."""
+
+
+def as_json(verdicts: Sequence[Verdict], problems: Sequence[str], seconds: float) -> str:
+    """Return all that is known of a check.
+
+    Args:
+        verdicts: What came of each scenario.
+        problems: What is wrong with the input besides.
+        seconds: Wall-clock time of it all (s).
+    """
+    count = dict.fromkeys(("passed", "failed", "broken", "invalid"), 0)
+    for verdict in verdicts:
+        count[verdict.status] += 1
+    told = {
+        "version": __version__,
+        **count,
+        "problems": list(problems),
+        "seconds": round(seconds, 3),
+        "scenarios": [verdict.model_dump(mode="json") for verdict in verdicts],
+    }
+    return json.dumps(told, indent=2)
+
+
+def junit_xml(verdicts: Sequence[Verdict], problems: Sequence[str], seconds: float) -> str:
+    """Return the report, in the form that both Ant's schema and that of Jenkins allow.
+
+    Args:
+        verdicts: What came of each scenario.
+        problems: What is wrong with the input besides; each is an error of its own.
+        seconds: Wall-clock time of it all (s).
+    """
+    cases = [_case(verdict) for verdict in verdicts]
+    cases += [_problem(i, problem) for i, problem in enumerate(problems, 1)]
+    suite = ElementTree.Element(
+        "testsuite",
+        {
+            "name": "fuzzyq check",
+            "package": "fuzzyq",
+            "id": "0",
+            "timestamp": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%S"),
+            "hostname": _clean(platform.node()) or "localhost",
+            "tests": str(len(cases)),
+            "failures": str(sum(case.find("failure") is not None for case in cases)),
+            "errors": str(sum(case.find("error") is not None for case in cases)),
+            "time": f"{seconds:.3f}",
+        },
+    )
+    ElementTree.SubElement(suite, "properties")
+    suite.extend(cases)
+    # Ant's schema wants both, even empty.
+    out = ElementTree.SubElement(suite, "system-out")
+    out.text = _clean("\n".join(line for verdict in verdicts for line in lines_of(verdict)))
+    ElementTree.SubElement(suite, "system-err")
+    root = ElementTree.Element("testsuites")
+    root.append(suite)
+    ElementTree.indent(root)
+    text = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def _case(verdict: Verdict) -> ElementTree.Element:
+    case = _element(verdict.name, verdict.file, verdict.seconds)
+    if verdict.status != "passed":
+        # A failure is a verdict about the robot; an error is that there is none.
+        kind = "failure" if verdict.status == "failed" else "error"
+        why = {"message": _clean("; ".join(verdict.why)), "type": verdict.status}
+        ElementTree.SubElement(case, kind, why).text = _clean(
+            f"{verdict.file}:{verdict.line}\n{explanation(verdict)}"
+        )
+    return case
+
+
+def _problem(number: int, problem: str) -> ElementTree.Element:
+    case = _element(f"input-{number}", "input", 0.0)
+    why = {"message": _clean(problem), "type": "invalid"}
+    ElementTree.SubElement(case, "error", why).text = _clean(problem)
+    return case
+
+
+def _element(name: str, file: str, seconds: float) -> ElementTree.Element:
+    parts = [part for part in Path(file).with_suffix("").parts if part.strip("./\\")]
+    where = {"name": _clean(name), "classname": _clean(".".join(parts)), "time": f"{seconds:.3f}"}
+    return ElementTree.Element("testcase", where)
+
+
+def _clean(text: str) -> str:
+    return _NOT_XML.sub("?", text)
+
+
+def verdict_commands(verdict: Verdict) -> list[str]:
+    """Return GitHub's workflow commands that tell of a failure, and of changes, at their lines."""
+    told = []
+    if verdict.status != "passed":
+        placed = _PLACE.match(verdict.why[0]) if verdict.why else None
+        line = int(placed["line"] or 1) if placed else verdict.line
+        text = "\n".join([*verdict.why, *([verdict.replay] if verdict.result else [])])
+        told.append(_command("error", verdict.file, line, verdict.name, text))
+    for warning in verdict.warnings:
+        placed = _PLACE.match(warning)
+        line = int(placed["line"] or 1) if placed else 1
+        told.append(_command("warning", verdict.file, line, verdict.name, warning))
+    if verdict.changes:
+        text = "\n".join(verdict.changes)
+        told.append(_command("warning", verdict.file, verdict.line, verdict.name, text))
+    return told
+
+
+def problem_command(problem: str) -> str:
+    """Return the workflow command for a line that begins with a file, and perhaps its line."""
+    placed = _PLACE.match(problem)
+    if placed is None:
+        return f"::error title=fuzzyq check::{_data(problem)}"
+    return _command("error", placed["file"], int(placed["line"] or 1), "fuzzyq check", problem)
+
+
+def harmless(line: str) -> str:
+    """Return a line for people that GitHub takes for no command, whatever names it holds."""
+    return line.replace("::", ": :").replace("##[", "## [")
+
+
+def _command(kind: str, file: str, line: int, title: str, text: str) -> str:
+    where = f"file={_value(_from_here(file))},line={line},title={_value(title)}"
+    return f"::{kind} {where}::{_data(text)}"
+
+
+def _from_here(file: str) -> str:
+    """Return a path as GitHub knows it: from the top of the checkout, which is the usual place."""
+    top = Path(os.environ.get("GITHUB_WORKSPACE") or Path.cwd()).resolve()
+    path = Path(file).parent.resolve() / Path(file).name  # a link is the file that was checked
+    return path.relative_to(top).as_posix() if path.is_relative_to(top) else file
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _value(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

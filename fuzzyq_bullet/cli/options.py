@@ -1,0 +1,81 @@
+"""Options that several commands have, each said once, and where a command's help comes from."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, TypeAlias
+
+import typer
+
+SLOWEST, FASTEST = 0.1, 100.0
+"""Playback speeds of a video."""
+
+
+def help_of(command: Callable[..., None]) -> str:
+    """Return what ``--help`` says about a command: its docstring, less what is for callers."""
+    return inspect.cleandoc(command.__doc__ or "").partition("\n\nRaises:")[0]
+
+
+def _folder(text: str | Path) -> Path:
+    if not str(text):  # else it would become ".", as an unset variable in a script does
+        raise typer.BadParameter("is empty; give a folder, or . for the current one")
+    return Path(text)
+
+
+def _file(text: str | Path) -> Path:
+    if not str(text):
+        raise typer.BadParameter("is empty; give a file")
+    return Path(text)
+
+
+FOLDER: dict[str, Any] = {"parser": _folder, "metavar": "<path>"}
+"""For ``typer.Option``: a folder, which an empty text is not."""
+FILE: dict[str, Any] = {"parser": _file, "metavar": "<file>"}
+"""For ``typer.Option``: a file."""
+
+
+def _load(names: list[str] | None) -> list[str] | None:
+    """Import the modules while the command line is read, before anything else is done."""
+    from fuzzyq_bullet.plugins import load_plugins
+
+    load_plugins(names or [])
+    return names
+
+
+def _check_speed(value: float) -> float:
+    if not SLOWEST <= value <= FASTEST:
+        raise typer.BadParameter(f"must be from {SLOWEST:g} to {FASTEST:g}, got {value:g}")
+    return value
+
+
+PluginOption: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="MODULE",
+        callback=_load,
+        help="Python module or file to import first (repeatable).",
+    ),
+]
+SpeedOption: TypeAlias = Annotated[
+    float,
+    typer.Option(help="Playback speed of the video; 1 is real time.", callback=_check_speed),
+]
+ReplaceOption: TypeAlias = Annotated[
+    bool, typer.Option("--replace", help="Replace files of another run of that name.")
+]
+Json: TypeAlias = Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")]
+
+Jobs: TypeAlias = Annotated[
+    int | None, typer.Option(min=1, max=4096, help="Episodes at a time; one a core by default.")
+]
+"""For sweeps, and whatever else goes over worker processes."""
+Backend: TypeAlias = Annotated[str, typer.Option(help="loky (this machine), or dask.")]
+Scheduler: TypeAlias = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Of the Dask scheduler.")
+]
+SweepSeed: TypeAlias = Annotated[int, typer.Option(help="Seed of the sweep.")]
+Runs: TypeAlias = Annotated[
+    int, typer.Option(min=1, max=100_000, help="Environments for every count.")
+]
