@@ -22,7 +22,6 @@ from PIL import Image
 
 from fuzzyq_bullet import Trajectory, UserError, load_scenario, result_of, run, with_options
 from fuzzyq_bullet.cli import app
-from fuzzyq_bullet.cli.train import _Progress
 from fuzzyq_bullet.experiments.figures.learning_curve import MARKS, picture
 from fuzzyq_bullet.learning import load_policy
 from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve
@@ -32,6 +31,7 @@ from fuzzyq_bullet.scenario import dump_scenario, parse_scenario
 from fuzzyq_bullet.training.curves import last_mean
 from fuzzyq_bullet.training.order import Order
 from fuzzyq_bullet.training.recipes import RECIPES
+from fuzzyq_bullet.training.session import TrainingProgress
 from fuzzyq_bullet.training.shipped import SHIPPED
 
 PLANNER = "fuzzy-q-lambda"
@@ -402,7 +402,7 @@ def test_a_running_mean_looks_back_at_what_there_is() -> None:
 
 def test_the_bar_tells_success_and_rate() -> None:
     notes: list[tuple[str, int]] = []
-    progress = _Progress(before=100)
+    progress = TrainingProgress(before=100)
     update = progress.shown(200, lambda note, done: notes.append((note, done)))
     time.sleep(0.01)
     update(MIXED[:120])

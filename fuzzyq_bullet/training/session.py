@@ -1,0 +1,260 @@
+"""One training as a user asks for it: on what, what is there already, what it came to."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, get_args
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.files import writable_files
+from fuzzyq_bullet.learning.checkpoint import Checkpoint, Curve
+from fuzzyq_bullet.learning.policy import load_policy
+from fuzzyq_bullet.learning.policy_fields import MAX_WORDS
+from fuzzyq_bullet.learning.training import MAX_EPISODES
+from fuzzyq_bullet.planning import planner_names, settings_for
+from fuzzyq_bullet.scenario import load_scenario, realise
+from fuzzyq_bullet.scenario.models import Drive
+from fuzzyq_bullet.training.curves import WINDOW, success
+from fuzzyq_bullet.training.order import Order
+from fuzzyq_bullet.training.recipes import RECIPES, learn, recipe_of
+from fuzzyq_bullet.training.tasks import MOST_SEED, Tasks
+from fuzzyq_bullet.version import __version__
+from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
+
+FOLDER = Path("out/train")
+
+
+@dataclass(frozen=True)
+class TrainingFiles:
+    """What a training writes."""
+
+    policy: Path
+    picture: Path
+    checkpoint: Path
+
+    @classmethod
+    def of(cls, planner: str, out: str | None) -> TrainingFiles:
+        """Return what a training writes; ``out`` is the policy, by default in ``FOLDER``.
+
+        Raises:
+            UserError: If it is called otherwise.
+        """
+        policy = FOLDER / f"{planner}.json" if out is None else Path(out)
+        if policy.suffix != ".json":
+            raise UserError(f"--out: give a file that ends in .json, got {out!r}")
+        return cls(
+            policy,
+            policy.with_name(f"{policy.stem}.png"),
+            policy.with_name(f"{policy.stem}.checkpoint.npz"),
+        )
+
+    @property
+    def all(self) -> tuple[Path, ...]:
+        """All of them."""
+        return self.policy, self.picture, self.checkpoint
+
+    def check(self) -> None:
+        """Make sure that all can be written, before anything is learned."""
+        writable_files(self.policy.parent, [path.name for path in self.all])
+
+
+@dataclass
+class TrainingProgress:
+    """How far a training is, and how fast.
+
+    Attributes:
+        before: Episodes that were done before this process.
+        done: Episodes that are done.
+        seconds: How long this process trained (s).
+    """
+
+    before: int
+    done: int = 0
+    seconds: float = 0.0
+    _began: float = field(default_factory=time.perf_counter)
+
+    def __post_init__(self) -> None:
+        self.done = self.before
+
+    @property
+    def ran(self) -> int:
+        """Episodes of this process."""
+        return self.done - self.before
+
+    @property
+    def rate(self) -> float | None:
+        """Episodes per second; None when there were none."""
+        return self.ran / self.seconds if self.ran and self.seconds > 0.0 else None
+
+    def shown(self, total: int, show: Callable[[str, int], None]) -> Callable[[Curve], None]:
+        """Return what is to be called after every episode; the clock starts now."""
+        self._began = time.perf_counter()
+
+        def update(curve: Curve) -> None:
+            self.done = len(curve)
+            self.seconds = time.perf_counter() - self._began
+            recent = curve[-WINDOW:]
+            show(
+                f"episode {self.done} of {total}, {self.rate or 0.0:.1f}/s, "
+                f"goal in {100 * success(recent):.0f} % of the last {len(recent)}",
+                self.done,
+            )
+
+        return update
+
+
+def order_for(planner: str, episodes: int, drive: str, seed: int, scenario: str | None) -> Order:
+    """Return what is asked for by the options of a command.
+
+    Raises:
+        UserError: If any of it is not allowed; names the option.
+    """
+    if planner not in RECIPES:
+        known = planner in planner_names()
+        what = f"{planner} does not learn" if known else f"no planner {shorten(planner)}"
+        hint = "" if known else did_you_mean(planner, RECIPES)
+        raise UserError(f"PLANNER: {what}; {hint}those that learn: {', '.join(RECIPES)}")
+    if not 1 <= episodes <= MAX_EPISODES:
+        raise UserError(f"--episodes: must be from 1 to {MAX_EPISODES}, got {episodes}")
+    if not 0 <= seed <= MOST_SEED:
+        raise UserError(f"--seed: must be from 0 to {MOST_SEED}, got {seed}")
+    drives: tuple[Drive, ...] = get_args(Drive)
+    for known_drive in drives:
+        if drive == known_drive:
+            order = Order(planner, episodes, known_drive, seed, scenario)
+            break
+    else:
+        raise UserError(f"--drive: {not_one_of('drive', drive, sorted(drives))}")
+    if len(order.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
+        raise UserError(
+            f"--scenario: its path is too long for the policy to hold: {shorten(scenario)}"
+        )
+    return order
+
+
+def tasks_for(order: Order) -> Tasks:
+    """Return what is learned on.
+
+    Raises:
+        UserError: If the scenario is wrong.
+    """
+    recipe = recipe_of(order.planner)
+    if order.scenario is None:
+        return recipe.tasks(order.drive, order.seed)
+    asked = load_scenario(order.scenario, policies=False)
+    # The planner that learns takes the place of the scenario's own, of which nothing is used.
+    settings = settings_for(order.planner).model_validate({"name": order.planner})
+    asked = asked.model_copy(update={"planner": settings})
+    realise(asked)  # now rather than in an episode, should its obstacles find no place
+    return recipe.tasks(order.drive, order.seed, asked)
+
+
+def episodes_done(
+    order: Order, tasks: Tasks, files: TrainingFiles, *, resume: bool, anew: bool
+) -> int:
+    """Return how many episodes of the training that is to go on are done already.
+
+    Raises:
+        UserError: If another training was begun or finished there, or the same was begun, and it
+            was not said what is to become of it.
+    """
+    if anew:
+        return 0
+    checkpoint = files.checkpoint
+    try:
+        saved = Checkpoint.find(checkpoint)
+    except UserError as error:
+        raise UserError(f"{error.problems[0]}; --anew begins again") from error
+    done, total = (0, 0) if saved is None else (len(saved.curve), saved.plan.get("episodes", 0))
+    if resume and saved is not None:
+        return done
+    if 0 < done != total:
+        raise UserError(
+            f"{checkpoint}: a training was begun, {done} of {total} episodes are done; "
+            "--resume goes on, --anew begins again, another --out leaves it alone"
+        )
+    finished = [path for path in files.all if path.exists()]
+    if (
+        finished
+        and not (done == 0 and finished == [checkpoint])
+        and not _is_same(order, tasks, files)
+    ):
+        raise UserError(
+            f"{finished[0]}: is there already, and not of this training; --anew replaces it, "
+            "another --out leaves it alone"
+        )
+    return 0
+
+
+def _is_same(order: Order, tasks: Tasks, files: TrainingFiles) -> bool:
+    """Return whether the policy that is there was made by the very same training."""
+    try:
+        policy = load_policy(files.policy)
+    except UserError:
+        return False
+    return (policy.command, policy.scenario) == (order.command, tasks.digest())
+
+
+def episodes_kept(checkpoint: Path) -> int:
+    """Return how many episodes are safe on disk."""
+    try:
+        saved = Checkpoint.find(checkpoint)
+    except UserError:  # somebody else's by now
+        return 0
+    return len(saved.curve) if saved else 0
+
+
+def learn_policy(
+    order: Order,
+    tasks: Tasks,
+    files: TrainingFiles,
+    on_episode: Callable[[Curve], None],
+    *,
+    resume: bool,
+) -> Curve:
+    """Train, write the policy, and return the learning curve."""
+    recipe = recipe_of(order.planner)
+    policy, curve = learn(
+        recipe,
+        tasks,
+        recipe.setup(order.episodes, order.seed),
+        command=order.command,
+        checkpoint=files.checkpoint,
+        resume=resume,
+        on_episode=on_episode,
+    )
+    policy.save(files.policy)
+    return curve
+
+
+def title_of(order: Order, tasks: Tasks) -> str:
+    """Return the heading of the learning curve."""
+    # A scenario's name is of plain letters; its path may hold what no font can show.
+    where = "random fields" if tasks.scenario is None else tasks.scenario.name
+    return f"{order.planner}: learned on {where} ({order.drive}, seed {order.seed})"
+
+
+def summary_of(
+    order: Order, curve: Curve, progress: TrainingProgress, files: TrainingFiles
+) -> dict[str, Any]:
+    """Return what became of a training, for people and as JSON."""
+    window = min(WINDOW, len(curve))
+    return {
+        "planner": order.planner,
+        "command": order.command,
+        "version": __version__,
+        "episodes": len(curve),
+        "episodes_before": progress.before,
+        "episodes_now": progress.ran,
+        "time_s": round(progress.seconds, 3),
+        "episodes_per_s": progress.rate and round(progress.rate, 3),
+        "window": window,
+        "success_first": success(curve[:window]),
+        "success_last": success(curve[-window:]),
+        "policy": str(files.policy),
+        "picture": str(files.picture),
+        "checkpoint": str(files.checkpoint),
+    }
