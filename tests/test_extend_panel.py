@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 
-from fuzzyq_bullet.video import register_panel
+from fuzzyq_bullet.video import register_panel, style
 
 if TYPE_CHECKING:
     from conftest import Call
@@ -62,6 +63,22 @@ def test_a_panel_that_fails_is_one_line_that_names_it(
     assert done.returncode == 2
     assert done.stderr == "error: panel mine: ZeroDivisionError: division by zero\n"
     assert list(tmp_path.glob("*.mp4")) == []
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 9])
+def test_any_number_of_panels_has_room_without_covering_anything(count: int) -> None:
+    width, height = style.frame_size(count)
+    places = style.places_below(count)
+    assert len(places) == count
+    for place in places:
+        assert all(value % 2 == 0 for value in place)
+        assert place.y >= style.SENSORS.bottom
+        assert 0 <= place.x < place.right <= width
+        assert place.bottom <= height
+    for a, b in combinations(places, 2):
+        assert a.right <= b.x or a.bottom <= b.y
+    assert (width % 4, height % 4) == (0, 0), "half of it is a small film, which is even too"
+    assert style.frame_size(0) == (style.WIDTH, style.HEIGHT)
 
 
 def test_a_name_is_given_once() -> None:

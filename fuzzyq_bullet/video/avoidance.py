@@ -9,12 +9,11 @@ import numpy as np
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import MODES
-from fuzzyq_bullet.video.footprints import clipped, extent, footprint
+from fuzzyq_bullet.video.footprints import Floats, clipped, extent, footprint
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.scenario.models import Box, Cylinder
     from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.footprints import Floats
 
 _TOUCHING = 0.02
 """Obstacles no farther apart than about this are one (m)."""

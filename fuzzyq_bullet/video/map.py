@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
-from fuzzyq_bullet.video.footprints import arrow, clipped, corners_for, extent, footprint
+from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for, extent, footprint
 from fuzzyq_bullet.video.marks import began, cross, diamond, grid_step, left_off
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.style import MAP
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from fuzzyq_bullet.trajectory import Trajectory
     from fuzzyq_bullet.video.timeline import Moment
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _PADDING = 12
 _LINE = 3.6

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fuzzyq_bullet.physics.camera import Lens, Mesh
 from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import style
-from fuzzyq_bullet.video.footprints import clipped, corners_for, extent, footprint
+from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for, extent, footprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from fuzzyq_bullet.scenario.models import Box, Cylinder, Scenario
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _CHUNK = 400
 """Obstacles of one mesh: PyBullet holds at most 131072 corners a shape."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from PIL import Image, ImageChops, ImageDraw
 
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera, photograph
@@ -20,9 +20,8 @@ from fuzzyq_bullet.video.viewpoint import extent_of, lens_for, way
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video.footprints import Floats
     from fuzzyq_bullet.video.timeline import Moment
-
-Floats: TypeAlias = NDArray[np.float64]
 
 DETAIL = 2
 """How many times larger everything is rendered, to be shrunk to smooth edges."""

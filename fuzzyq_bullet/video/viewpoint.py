@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fuzzyq_bullet.physics.camera import Lens
 from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
-
-Floats: TypeAlias = NDArray[np.float64]
+    from fuzzyq_bullet.video.footprints import Floats
 
 FIELD_OF_VIEW = math.radians(26.0)
 """Narrow: far things stay nearly as large as near ones."""

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.fuzzy.paper import RULES
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.rules import RuleBase
     from fuzzyq_bullet.fuzzy.sets import Variable
     from fuzzyq_bullet.trajectory import Trajectory
-
-Floats: TypeAlias = NDArray[np.float64]
+    from fuzzyq_bullet.video.footprints import Floats
 
 NEAR_WORDS = ("very near", "near", "medium", "far", "very far")
 SIDE_WORDS = ("right much freer", "right freer", "alike", "left freer", "left much freer")

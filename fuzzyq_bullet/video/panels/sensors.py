@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import is_clear
-from fuzzyq_bullet.video.footprints import arrow, clipped, corners_for, corridor, extent, footprint
+from fuzzyq_bullet.video.footprints import (
+    Floats,
+    arrow,
+    clipped,
+    corners_for,
+    corridor,
+    extent,
+    footprint,
+)
 from fuzzyq_bullet.video.meshes import walls_of
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.style import SENSORS
@@ -28,8 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fuzzyq_bullet.trajectory import Trajectory
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _LENS: paint.Box = (8, 28, 182, 202)
 _DIAMETER = _LENS[2] - _LENS[0]
