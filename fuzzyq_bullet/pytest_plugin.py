@@ -34,7 +34,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     parser.addini(
         "fuzzyq_plugins",
-        "Python modules or files that register planners which scenarios ask for",
+        "Python modules or files that register what scenarios ask for: planners, expectations",
         type="args",
         default=[],
     )
