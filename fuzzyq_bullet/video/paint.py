@@ -325,8 +325,6 @@ def card(rect: Rect, title: str = "") -> Image.Image:
     return image
 
 
-def region_of(rect: Rect, image: Image.Image, box: Box | None = None) -> DirtyRegion:
-    """Return a part of the picture of ``rect`` as a patch of the frame."""
-    if box is None:
-        return DirtyRegion(rect.x, rect.y, image)
+def region_of(rect: Rect, image: Image.Image, box: Box) -> DirtyRegion:
+    """Return the part ``box`` of the picture of ``rect`` as one of the frame."""
     return DirtyRegion(rect.x + box[0], rect.y + box[1], image.crop(box))
