@@ -17,7 +17,8 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, Schedule, load_policy
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import QLambdaSettings, QLearningSettings, make_planner, planner_names
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.direct import (
     ACTION_NAMES,
     ACTIONS,

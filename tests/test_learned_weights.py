@@ -22,7 +22,7 @@ from fuzzyq_bullet.planning import (
     ImprovedFuzzySettings,
     make_planner,
 )
-from fuzzyq_bullet.planning.base import MODES, Mode
+from fuzzyq_bullet.planning.decision import MODES, Mode
 from fuzzyq_bullet.planning.encounter import Encounters
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.planning.routine import Situation

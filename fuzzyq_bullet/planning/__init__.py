@@ -1,7 +1,8 @@
 """Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
 
 from fuzzyq_bullet.planning import direct, weighing
-from fuzzyq_bullet.planning.base import MODES, Decision, Mode, Motion, Observation, Planner
+from fuzzyq_bullet.planning.base import Motion, Observation, Planner
+from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.direct import DirectPlanner
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.improved import ImprovedFuzzyPlanner

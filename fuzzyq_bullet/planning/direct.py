@@ -14,7 +14,8 @@ from itertools import product
 from typing import NamedTuple
 
 from fuzzyq_bullet.learning import Expected, Policy, greedy
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.settings import PolicySettings
 
 LINE_ANGLE = math.radians(45.0)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fuzzyq_bullet.planning.base import STEP_UNIT, Mode
+from fuzzyq_bullet.planning.base import STEP_UNIT
+from fuzzyq_bullet.planning.decision import Mode
 
 SHORTEST = 1.0 * STEP_UNIT
 """How much nearer to the goal than when it last chose the robot must be to choose anew (m)."""

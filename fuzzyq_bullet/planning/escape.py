@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import math
 
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Decision, Mode, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Observation
 from fuzzyq_bullet.planning.course import NEARER, Course
+from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.exits import Exit
 from fuzzyq_bullet.planning.places import Places
 from fuzzyq_bullet.planning.sweep import eased, first_free

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from fuzzyq_bullet.planning.base import Decision, Observation
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.routine import Routine
 from fuzzyq_bullet.planning.settings import FuzzySettings
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from fuzzyq_bullet.geometry import wrap_angle
-from fuzzyq_bullet.planning.base import Decision, Motion, Observation
+from fuzzyq_bullet.planning.base import Motion, Observation
+from fuzzyq_bullet.planning.decision import Decision
 
 RESERVE = 0.02
 """Free distance that is never used up (m): by so much a detection line may be too long where a

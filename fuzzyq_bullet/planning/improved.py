@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from fuzzyq_bullet.planning.base import Decision, Mode, Observation
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.escape import Escape
 from fuzzyq_bullet.planning.guard import guarded
 from fuzzyq_bullet.planning.routine import Routine, Situation

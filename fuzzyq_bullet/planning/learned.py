@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from fuzzyq_bullet.learning import Policy, greedy
-from fuzzyq_bullet.planning.base import Decision, Observation
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.encounter import Encounters
 from fuzzyq_bullet.planning.improved import Weighed
 from fuzzyq_bullet.planning.routine import Situation

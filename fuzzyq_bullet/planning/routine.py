@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from fuzzyq_bullet.fuzzy.controller import Inference
 from fuzzyq_bullet.fuzzy.paper import paper_controller
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.settings import RoutineSettings
 
 

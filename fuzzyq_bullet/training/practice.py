@@ -8,7 +8,8 @@ from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.planning.base import Decision, Observation
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.scenario.models import Limits, Start
 from fuzzyq_bullet.training.rewards import Reward
 from fuzzyq_bullet.training.tasks import Tasks
