@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fuzzyq_bullet.learning.checkpoint import Curve
-    from fuzzyq_bullet.training.order import Order
+    from fuzzyq_bullet.training.config import TrainingConfig
     from fuzzyq_bullet.training.tasks import Tasks
 
 FOLDER = Path("out/train")
@@ -66,9 +66,9 @@ def train(
     from fuzzyq_bullet.files import alone_at, refuse_inputs
     from fuzzyq_bullet.outputs import plugin_inputs
 
-    order = _order(planner, episodes, drive, seed, scenario)
-    files = _Files.of(order.planner, out)
-    tasks = _tasks(order)
+    config = _config(planner, episodes, drive, seed, scenario)
+    files = _Files.of(config.planner, out)
+    tasks = _tasks(config)
     files.check()
     from fuzzyq_bullet.scenario import find_scenario
 
@@ -76,17 +76,17 @@ def train(
     refuse_inputs(files.all, [*read, *plugin_inputs(plugin or [])])
     try:
         with alone_at(files.checkpoint):
-            progress = _Progress(_begun(order, tasks, files, resume=resume, anew=anew))
-            curve = _learn(order, tasks, files, progress, resume=resume)
+            progress = _Progress(_begun(config, tasks, files, resume=resume, anew=anew))
+            curve = _learn(config, tasks, files, progress, resume=resume)
     except Stopped:
         where = [] if out is None else ["--out", out]
-        again = f"{order.command} {shlex.join([*where, '--resume'])}"
-        say(f"{_kept(files.checkpoint)} of {order.episodes} episodes are kept; to go on: {again}")
+        again = f"{config.command} {shlex.join([*where, '--resume'])}"
+        say(f"{_kept(files.checkpoint)} of {config.episodes} episodes are kept; to go on: {again}")
         raise
-    summary = _summary(order, curve, progress, files)
+    summary = _summary(config, curve, progress, files)
     if json:
         typer.echo(dumps(summary, indent=2))
-    _tell(order, summary)
+    _tell(config, summary)
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,9 @@ class _Progress:
         self.seconds = time.perf_counter() - self._began
 
 
-def _order(planner: str, episodes: int, drive: str, seed: int, scenario: str | None) -> Order:
+def _config(
+    planner: str, episodes: int, drive: str, seed: int, scenario: str | None
+) -> TrainingConfig:
     """Return what is asked for.
 
     Raises:
@@ -179,12 +181,12 @@ def _order(planner: str, episodes: int, drive: str, seed: int, scenario: str | N
     """
     from typing import get_args
 
-    from fuzzyq_bullet.learning.policy_fields import MAX_WORDS
+    from fuzzyq_bullet.learning.policy import MAX_WORDS
     from fuzzyq_bullet.learning.training import MAX_EPISODES
     from fuzzyq_bullet.planning import planner_names
     from fuzzyq_bullet.scenario.models import Drive
-    from fuzzyq_bullet.training.order import Order
-    from fuzzyq_bullet.training.recipes import RECIPES
+    from fuzzyq_bullet.training.config import TrainingConfig
+    from fuzzyq_bullet.training.registry import RECIPES
     from fuzzyq_bullet.training.tasks import MOST_SEED
     from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
 
@@ -200,18 +202,18 @@ def _order(planner: str, episodes: int, drive: str, seed: int, scenario: str | N
     drives: tuple[Drive, ...] = get_args(Drive)
     for known_drive in drives:
         if drive == known_drive:
-            order = Order(planner, episodes, known_drive, seed, scenario)
+            config = TrainingConfig(planner, episodes, known_drive, seed, scenario)
             break
     else:
         raise UserError(f"--drive: {not_one_of('drive', drive, sorted(drives))}")
-    if len(order.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
+    if len(config.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
         raise UserError(
             f"--scenario: its path is too long for the policy to hold: {shorten(scenario)}"
         )
-    return order
+    return config
 
 
-def _tasks(order: Order) -> Tasks:
+def _tasks(config: TrainingConfig) -> Tasks:
     """Return what is learned on.
 
     Raises:
@@ -219,20 +221,20 @@ def _tasks(order: Order) -> Tasks:
     """
     from fuzzyq_bullet.planning import settings_for
     from fuzzyq_bullet.scenario import load_scenario, realise
-    from fuzzyq_bullet.training.recipes import recipe_of
+    from fuzzyq_bullet.training.registry import recipe_of
 
-    recipe = recipe_of(order.planner)
-    if order.scenario is None:
-        return recipe.tasks(order.drive, order.seed)
-    asked = load_scenario(order.scenario, policies=False)
+    recipe = recipe_of(config.planner)
+    if config.scenario is None:
+        return recipe.tasks(config.drive, config.seed)
+    asked = load_scenario(config.scenario, policies=False)
     # The planner that learns takes the place of the scenario's own, of which nothing is used.
-    settings = settings_for(order.planner).model_validate({"name": order.planner})
+    settings = settings_for(config.planner).model_validate({"name": config.planner})
     asked = asked.model_copy(update={"planner": settings})
     realise(asked)  # now rather than in an episode, should its obstacles find no place
-    return recipe.tasks(order.drive, order.seed, asked)
+    return recipe.tasks(config.drive, config.seed, asked)
 
 
-def _begun(order: Order, tasks: Tasks, files: _Files, *, resume: bool, anew: bool) -> int:
+def _begun(config: TrainingConfig, tasks: Tasks, files: _Files, *, resume: bool, anew: bool) -> int:
     """Return how many episodes of the training that is to go on are done already.
 
     Raises:
@@ -260,7 +262,7 @@ def _begun(order: Order, tasks: Tasks, files: _Files, *, resume: bool, anew: boo
     if (
         finished
         and not (done == 0 and finished == [checkpoint])
-        and not _is_same(order, tasks, files)
+        and not _is_same(config, tasks, files)
     ):
         raise UserError(
             f"{finished[0]}: is there already, and not of this training; --anew replaces it, "
@@ -269,7 +271,7 @@ def _begun(order: Order, tasks: Tasks, files: _Files, *, resume: bool, anew: boo
     return 0
 
 
-def _is_same(order: Order, tasks: Tasks, files: _Files) -> bool:
+def _is_same(config: TrainingConfig, tasks: Tasks, files: _Files) -> bool:
     """Return whether the policy that is there was made by the very same training."""
     from fuzzyq_bullet.learning.policy import load_policy
 
@@ -277,7 +279,7 @@ def _is_same(order: Order, tasks: Tasks, files: _Files) -> bool:
         policy = load_policy(files.policy)
     except UserError:
         return False
-    return (policy.command, policy.scenario) == (order.command, tasks.digest())
+    return (policy.command, policy.scenario) == (config.command, tasks.digest())
 
 
 def _kept(checkpoint: Path) -> int:
@@ -292,13 +294,13 @@ def _kept(checkpoint: Path) -> int:
 
 
 def _learn(
-    order: Order, tasks: Tasks, files: _Files, progress: _Progress, *, resume: bool
+    config: TrainingConfig, tasks: Tasks, files: _Files, progress: _Progress, *, resume: bool
 ) -> Curve:
     """Train, write the policy and the picture, and return the learning curve."""
-    from fuzzyq_bullet.training.recipes import learn, recipe_of
+    from fuzzyq_bullet.training.registry import learn, recipe_of
 
-    recipe = recipe_of(order.planner)
-    with progress_bar("training", order.episodes) as (bar, task):
+    recipe = recipe_of(config.planner)
+    with progress_bar("training", config.episodes) as (bar, task):
 
         def show(note: str, done: int) -> None:
             bar.update(task, completed=done, note=note)
@@ -307,34 +309,36 @@ def _learn(
         policy, curve = learn(
             recipe,
             tasks,
-            recipe.setup(order.episodes, order.seed),
-            command=order.command,
+            recipe.setup(config.episodes, config.seed),
+            command=config.command,
             checkpoint=files.checkpoint,
             resume=resume,
-            on_episode=progress.shown(order.episodes, show),
+            on_episode=progress.shown(config.episodes, show),
         )
     policy.save(files.policy)
 
     from fuzzyq_bullet.experiments.figures import learning_curve
 
-    learning_curve.draw(curve, _title(order, tasks), files.picture)
+    learning_curve.draw(curve, _title(config, tasks), files.picture)
     return curve
 
 
-def _title(order: Order, tasks: Tasks) -> str:
+def _title(config: TrainingConfig, tasks: Tasks) -> str:
     # A scenario's name is of plain letters; its path may hold what no font can show.
     where = "random fields" if tasks.scenario is None else tasks.scenario.name
-    return f"{order.planner}: learned on {where} ({order.drive}, seed {order.seed})"
+    return f"{config.planner}: learned on {where} ({config.drive}, seed {config.seed})"
 
 
-def _summary(order: Order, curve: Curve, progress: _Progress, files: _Files) -> dict[str, Any]:
+def _summary(
+    config: TrainingConfig, curve: Curve, progress: _Progress, files: _Files
+) -> dict[str, Any]:
     from fuzzyq_bullet.training.curves import WINDOW, success
     from fuzzyq_bullet.version import __version__
 
     window = min(WINDOW, len(curve))
     return {
-        "planner": order.planner,
-        "command": order.command,
+        "planner": config.planner,
+        "command": config.command,
         "version": __version__,
         "episodes": len(curve),
         "episodes_before": progress.before,
@@ -350,14 +354,14 @@ def _summary(order: Order, curve: Curve, progress: _Progress, files: _Files) -> 
     }
 
 
-def _tell(order: Order, summary: dict[str, Any]) -> None:
+def _tell(config: TrainingConfig, summary: dict[str, Any]) -> None:
     rate, before, now = (summary[k] for k in ("episodes_per_s", "episodes_before", "episodes_now"))
     if now:
         pace = f"{now} episodes in {summary['time_s']:.1f} s: {rate:.2f} episodes/s"
         pace += f"; {before} were done already" if before else ""
     else:
         pace = f"all {before} episodes were done already"
-    say(f"{order.planner}: {pace} ({order.drive}, seed {order.seed})", style="bold")
+    say(f"{config.planner}: {pace} ({config.drive}, seed {config.seed})", style="bold")
     first, last = (100 * summary[key] for key in ("success_first", "success_last"))
     window = summary["window"]
     say(f"goal reached in {first:.0f} % of the first {window} episodes, {last:.0f} % of the last")

@@ -1,4 +1,7 @@
-"""What a training is asked for, and what to type to have it again."""
+"""The configuration of a training, and the command that does it again.
+
+As a program it prints, for ``make policies``, the commands that make the shipped policies.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from fuzzyq_bullet.scenario.models import Drive
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class TrainingConfig:
     """All that the result of a training depends on, but for the version.
 
     Attributes:
@@ -29,12 +32,27 @@ class Order:
 
     @property
     def command(self) -> str:
-        """The command that does it, every option told, whatever was typed in fact.
+        """The command that does it, with every option written out.
 
-        Where to write to is not in it: the same training gives the same file everywhere.
+        The output path is not in it: the same training gives the same file everywhere.
         """
         parts = ["fuzzyq", "train", self.planner, "--episodes", str(self.episodes)]
         parts += ["--drive", self.drive, "--seed", str(self.seed)]
         if self.scenario is not None:
             parts += ["--scenario", self.scenario]
         return shlex.join(parts)
+
+
+SHIPPED = {
+    config.planner: config
+    for config in (
+        TrainingConfig("q-learning", episodes=200, drive="kinematic", seed=0),
+        TrainingConfig("q-lambda", episodes=200, drive="kinematic", seed=0),
+        TrainingConfig("fuzzy-q-lambda", episodes=1500, drive="wheels", seed=1),
+    )
+}
+"""How each policy in ``assets/policies`` is made, by planner."""
+
+if __name__ == "__main__":
+    for config in SHIPPED.values():
+        print(config.command)

@@ -9,10 +9,10 @@ from typing import Any
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import (
-    Expected,
     Learner,
     LinearQLambda,
     Policy,
+    PolicySpec,
     Problem,
     QLambda,
     QLearning,
@@ -21,21 +21,18 @@ from fuzzyq_bullet.learning import (
     train,
 )
 from fuzzyq_bullet.learning.checkpoint import Curve
-from fuzzyq_bullet.planning.direct import ACTION_NAMES as HEADINGS
-from fuzzyq_bullet.planning.direct import EXPECTED as DIRECT
-from fuzzyq_bullet.planning.direct import STATE_NAMES as DIRECT_STATES
-from fuzzyq_bullet.planning.weighing import EXPECTED as WEIGHTS
+from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC as WEIGHTS
+from fuzzyq_bullet.planning.q_learning import POLICY_SPECS as DIRECT
 from fuzzyq_bullet.scenario import Drive, Scenario
-from fuzzyq_bullet.training.direct import DirectProblem
+from fuzzyq_bullet.training.problems import DirectProblem, WeightsProblem
 from fuzzyq_bullet.training.tasks import COUNTS, Tasks
-from fuzzyq_bullet.training.weights import WeightsProblem
 from fuzzyq_bullet.version import __version__
 
 EAGER = Schedule(0.9, 0.4)
-"""ε of ``fuzzy-q-lambda``: 0.9 − 0.4·(i/N). What is learned is the best, whatever is tried; and an
-action that chance made look bad is found out only by being tried again."""
+"""ε of ``fuzzy-q-lambda``: 0.9 − 0.4·(i/N). Q(λ) learns the values of the best actions whatever it
+tries, and an action that looked bad by chance must be tried again."""
 SPARSE = (25, 50)
-"""Its fields. In denser ones what a choice changes drowns in what a search for a way out takes."""
+"""Numbers of obstacles. With more, the time that an escape takes hides the effect of a choice."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +41,7 @@ class Recipe:
 
     Attributes:
         planner: Its name.
-        expected: What its policies look like: states, actions, learner.
+        spec: What its policies look like: states, actions, learner.
         problem: Makes what is to be learned, from the tasks to learn it on.
         learner: Makes what learns it.
         setup: How long and how fast, from the number of episodes and the seed.
@@ -52,7 +49,7 @@ class Recipe:
     """
 
     planner: str
-    expected: Expected
+    spec: PolicySpec
     problem: Callable[[Tasks], Problem[Any]]
     learner: Callable[[], Learner[Any]]
     setup: Callable[[int, int], Setup]
@@ -68,23 +65,23 @@ RECIPES = {
     for one in (
         Recipe(
             planner="q-learning",
-            expected=DIRECT["q-learning"],
+            spec=DIRECT["q-learning"],
             problem=DirectProblem,
-            learner=lambda: QLearning(len(DIRECT_STATES), len(HEADINGS)),
+            learner=lambda: QLearning(*DIRECT["q-learning"].shape),
             setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
         ),
         Recipe(
             planner="q-lambda",
-            expected=DIRECT["q-lambda"],
+            spec=DIRECT["q-lambda"],
             problem=DirectProblem,
-            learner=lambda: QLambda(len(DIRECT_STATES), len(HEADINGS)),
+            learner=lambda: QLambda(*DIRECT["q-lambda"].shape),
             setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
         ),
         Recipe(
             planner="fuzzy-q-lambda",
-            expected=WEIGHTS,
+            spec=WEIGHTS,
             problem=WeightsProblem,
-            learner=lambda: LinearQLambda(len(WEIGHTS.states), len(WEIGHTS.actions)),
+            learner=lambda: LinearQLambda(*WEIGHTS.shape),
             setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, exploration=EAGER),
             counts=SPARSE,
         ),
@@ -152,8 +149,8 @@ def learn(
         scenario=tasks.digest(),
         episodes=setup.episodes,
         parameters={key: described[key] for key in described if key not in ("seed", "episodes")},
-        states=tuple(recipe.expected.states),
-        actions=tuple(recipe.expected.actions),
+        states=tuple(recipe.spec.states),
+        actions=tuple(recipe.spec.actions),
         table=learner.table.tolist(),
     )
     return policy, curve
