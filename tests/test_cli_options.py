@@ -55,13 +55,12 @@ def test_the_same_planner_keeps_everything() -> None:
     assert with_options(scenario, planner="improved-fuzzy") == scenario
 
 
-def test_what_the_other_planner_refuses_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_other_planner_refuses_is_told() -> None:
     class Narrow(PlannerSettings):
         name: Literal["narrow"] = "narrow"
         line_angle: Literal[1, 2] = 1
         turn_unit: float = math.pi
 
-    monkeypatch.setattr(registry, "_entries", dict(registry._entries))
     registry.register_planner("narrow", Narrow, lambda settings, rng: None)  # type: ignore[arg-type,return-value]
     with pytest.raises(UserError) as caught:
         with_options(asked(name="improved-fuzzy", **SET), planner="narrow")

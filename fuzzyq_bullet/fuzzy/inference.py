@@ -1,19 +1,17 @@
 """Product inference, maximum aggregation and the sampled centroid (Eqs. 2–5 and 22).
 
-All that does not depend on the inputs is computed once. What is left of one inference is some
-hundred plain numbers, then three operations on arrays of a thousand.
+All that does not depend on the inputs is computed once.
 """
 
 from __future__ import annotations
 
 import math
-from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from fuzzyq_bullet.fuzzy.rules import RuleBase
 
@@ -54,7 +52,6 @@ class ProductInference:
         "_moments",
         "_row_sets",
         "_sampled",
-        "_shape",
         "base",
         "samples",
     )
@@ -102,18 +99,17 @@ class ProductInference:
             }
             for k, output in enumerate(base.outputs)
         ]
-        # Where one output has fewer of them, one is repeated, which no maximum notices.
+        # Where there are fewer labels or rules, some are repeated: that changes no maximum.
         most = max(map(len, concluded))
-        self._concluding: list[Callable[[list[float]], tuple[float, ...]]] = []
+        longest = max(len(numbers) for labels in concluded for numbers in labels.values())
+        self._concluding = np.empty((most, count, longest), dtype=np.intp)
         self._sampled = np.empty((most, count, samples))
-        self._shape = (most, count, 1)
         for slot in range(most):
             for k, (output, u, labels) in enumerate(
                 zip(base.outputs, grids, concluded, strict=True)
             ):
                 name = list(labels)[slot % len(labels)]
-                # Twice the first, so that there are always several: of one there is no tuple.
-                self._concluding.append(itemgetter(labels[name][0], *labels[name]))
+                self._concluding[slot, k] = np.resize(labels[name], longest)
                 self._sampled[slot, k] = output.memberships(u)[output.labels.index(name)]
 
     def infer(self, x: float, y: float) -> Fired:
@@ -126,17 +122,14 @@ class ProductInference:
         Returns:
             What fired, and how strongly.
         """
-        # Plain numbers: for so few of them an array costs more than it saves.
-        exp = math.exp
-        row = tuple([exp((x - at) * (x - at) * scale) for at, scale in self._row_sets])
-        column = tuple([exp((y - at) * (y - at) * scale) for at, scale in self._column_sets])
-        rules = tuple([tuple([one * other for other in column]) for one in row])
-        strengths = [strength for rule_row in rules for strength in rule_row]
+        row = tuple([math.exp((x - at) * (x - at) * scale) for at, scale in self._row_sets])
+        column = tuple([math.exp((y - at) * (y - at) * scale) for at, scale in self._column_sets])
+        rules = np.multiply.outer(row, column)
 
         # Eqs. 3 and 4. Rules that conclude the same set differ only by a factor, so the largest
         # of them is that set times the largest strength.
-        labels = [max(those_of(strengths)) for those_of in self._concluding]
-        aggregate = np.maximum.reduce(np.array(labels).reshape(self._shape) * self._sampled)
+        labels = rules.ravel()[self._concluding].max(axis=2, keepdims=True)
+        aggregate = np.maximum.reduce(labels * self._sampled)
 
         sums = aggregate.ravel().dot(self._moments).tolist()
         count = len(self._fallback)
@@ -148,4 +141,4 @@ class ProductInference:
                 )
             ]
         )
-        return Fired(row, column, rules, values)
+        return Fired(row, column, tuple(map(tuple, rules.tolist())), values)

@@ -1,8 +1,7 @@
-"""Where a training stands after an episode: kept on disk, so that an interruption costs nothing.
+"""Checkpoints: the state of a training after each episode, kept on disk to resume it from.
 
-Writing one takes about half a millisecond, and an episode far longer, so one is written after every
-episode. Eligibility traces end with their episode and random streams begin with it: a table, the
-curve so far and what the training was begun with are all that there is to keep.
+Eligibility traces end with their episode and random streams begin with it, so there is little to
+keep: the table, the learning curve so far, and what the training was begun with.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ Curve: TypeAlias = NDArray[np.void]
 ROW = np.dtype([("total", "<f8"), ("steps", "<i4"), ("outcome", "S16")])
 FORMAT = 1
 LARGEST = 1e9
-"""No value that was learned well is larger; whoever gets there diverges."""
+"""Greatest value of a table. A training that gets beyond it diverges."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +36,7 @@ class Checkpoint:
     """The state of a training between two episodes.
 
     Attributes:
-        plan: What the training was begun with; only the same can resume it.
+        plan: What the training was begun with. It can only be resumed with the same.
         table: What was learned, shape (S, A).
         curve: A row for each finished episode, of the type ``ROW``.
     """
@@ -96,7 +95,7 @@ class Checkpoint:
         return cls(plan, table, curve)
 
     def check(self, path: Path, plan: Mapping[str, Plain], shape: tuple[int, ...]) -> None:
-        """Make sure that this is the training which is to be resumed.
+        """Check that this is the training to be resumed.
 
         Args:
             path: What to call it in messages.

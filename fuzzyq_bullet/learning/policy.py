@@ -1,4 +1,4 @@
-"""Policies: what was learned, as a plain file that says how it was made.
+"""Policies: what was learned, as a plain file that says how it was made; and what may be in one.
 
 JSON with sorted keys and a line for each state. Numbers are written so that they read back as the
 very same, so the same training gives the same bytes.
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 MAX_BYTES = 4_000_000
-"""Largest policy file: 64 states and 25 actions take 0.03 MB, 10 000 and 8 take 1.6 MB."""
+"""Greatest size of a policy file. 64 states and 25 actions take 0.03 MB."""
 MAX_STATES = 50_000
 MAX_ACTIONS = 1_000
 MAX_PARAMETERS = 200

@@ -13,15 +13,14 @@ from fuzzyq_bullet.scenario.models import Drive
 
 @dataclass(frozen=True, slots=True)
 class TrainingConfig:
-    """All that the result of a training depends on, but for the version.
+    """Everything that the result of a training depends on, except the version.
 
     Attributes:
         planner: Name of the planner that learns.
-        episodes: For how many episodes.
+        episodes: Number of episodes.
         drive: What moves the robot.
-        seed: Where all chance comes from.
-        scenario: What it learns on: a path or the name of a bundled scenario; None for random
-            fields.
+        seed: Seed of all random numbers.
+        scenario: Path or name of the scenario to learn on; None for random scenarios.
     """
 
     planner: str

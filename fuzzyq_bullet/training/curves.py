@@ -1,4 +1,4 @@
-"""A learning curve in a few numbers: what the bar, the summary and the picture tell of it."""
+"""A learning curve in a few numbers, for the progress bar, the summary and the picture."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.learning.checkpoint import Curve
 
 WINDOW = 50
-"""Episodes that a running mean looks back at."""
+"""Number of episodes in a running mean."""
 SUCCESS = b"goal"
-"""The outcome of an episode that went well."""
+"""The outcome of a successful episode."""
 
 
 def reached(curve: Curve) -> NDArray[np.bool_]:
@@ -24,14 +24,14 @@ def reached(curve: Curve) -> NDArray[np.bool_]:
 
 
 def success(curve: Curve) -> float:
-    """Return the share of episodes that reached the goal; NaN of none."""
+    """Return the share of episodes that reached the goal; NaN if there are no episodes."""
     return float(reached(curve).mean()) if len(curve) else float("nan")
 
 
 def last_mean(values: NDArray[Any], window: int = WINDOW) -> Floats:
-    """Return the mean of every value and those before it, ``window`` in all, shape (N,).
+    """Return the running mean over the last ``window`` values, shape (N,).
 
-    The first ones have fewer before them, and are means of what there is.
+    At the beginning, where there are fewer, it is the mean of those.
     """
     count = len(values)
     sums = np.concatenate([[0.0], np.cumsum(values, dtype=float)])

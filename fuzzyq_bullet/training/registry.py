@@ -1,4 +1,4 @@
-"""How each planner learns: its problem, its learner, its schedules. One entry a planner."""
+"""How each planner learns: its problem, its learner and its schedules, one entry a planner."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ class Recipe:
     Attributes:
         planner: Its name.
         spec: What its policies look like: states, actions, learner.
-        problem: Makes what is to be learned, from the tasks to learn it on.
-        learner: Makes what learns it.
-        setup: How long and how fast, from the number of episodes and the seed.
-        counts: Numbers of obstacles of the random fields to learn in.
+        problem: Builds the learning problem from the tasks to learn it on.
+        learner: Builds the learner.
+        setup: Builds the schedules from the number of episodes and the seed.
+        counts: Numbers of obstacles of the random scenarios.
     """
 
     planner: str
