@@ -60,33 +60,56 @@ class Recipe:
         return Tasks(drive=drive, seed=seed, counts=self.counts, scenario=scenario)
 
 
-RECIPES = {
-    one.planner: one
-    for one in (
-        Recipe(
-            planner="q-learning",
-            spec=DIRECT["q-learning"],
-            problem=DirectProblem,
-            learner=lambda: QLearning(*DIRECT["q-learning"].shape),
-            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
-        ),
-        Recipe(
-            planner="q-lambda",
-            spec=DIRECT["q-lambda"],
-            problem=DirectProblem,
-            learner=lambda: QLambda(*DIRECT["q-lambda"].shape),
-            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
-        ),
-        Recipe(
-            planner="fuzzy-q-lambda",
-            spec=WEIGHTS,
-            problem=WeightsProblem,
-            learner=lambda: LinearQLambda(*WEIGHTS.shape),
-            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, exploration=EAGER),
-            counts=SPARSE,
-        ),
+RECIPES: dict[str, Recipe] = {}
+"""By planner."""
+
+
+def register_recipe(recipe: Recipe) -> None:
+    """Make known how a planner learns, so that ``fuzzyq train`` can train it.
+
+    The planner itself is registered by ``planning.register_planner``; its settings are a
+    ``PolicySettings``, so that a scenario can name the policy that was learned.
+
+    Raises:
+        ValueError: If it is known already how that planner learns.
+    """
+    if recipe.planner in RECIPES:
+        raise ValueError(f"it is known already how the planner {recipe.planner!r} learns")
+    RECIPES[recipe.planner] = recipe
+
+
+def _paper_setup(episodes: int, seed: int) -> Setup:
+    return Setup(episodes=episodes, seed=seed)
+
+
+register_recipe(
+    Recipe(
+        planner="q-learning",
+        spec=DIRECT["q-learning"],
+        problem=DirectProblem,
+        learner=lambda: QLearning(*DIRECT["q-learning"].shape),
+        setup=_paper_setup,
     )
-}
+)
+register_recipe(
+    Recipe(
+        planner="q-lambda",
+        spec=DIRECT["q-lambda"],
+        problem=DirectProblem,
+        learner=lambda: QLambda(*DIRECT["q-lambda"].shape),
+        setup=_paper_setup,
+    )
+)
+register_recipe(
+    Recipe(
+        planner="fuzzy-q-lambda",
+        spec=WEIGHTS,
+        problem=WeightsProblem,
+        learner=lambda: LinearQLambda(*WEIGHTS.shape),
+        setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, exploration=EAGER),
+        counts=SPARSE,
+    )
+)
 
 
 def recipe_of(planner: str) -> Recipe:

@@ -18,9 +18,9 @@ GIVEN_UP = 10.0
 class Reward:
     """The reward of one decision, in parts.
 
-    Over an episode that reaches the goal, time and progress sum to minus its delay: the time that
-    it took beyond driving the distance at full speed. Progress depends only on where the robot is, so
-    it does not change which behaviour is best (potential-based shaping).
+    Over an episode that reaches the goal, time and progress sum to minus its delay: the time
+    beyond that of driving the distance at full speed. Progress depends only on where the robot is,
+    so it does not change which behaviour is best (potential-based shaping).
 
     Attributes:
         time: Minus the time that passed (s); at most 0.

@@ -18,7 +18,6 @@ TRIES = 16
 """Scenarios that may be drawn for one episode until one has a path to the goal."""
 MOST_SEED = (2**63 - FIRST_SEED) // SEEDS_APART - 1
 """Greatest seed of a training."""
-MOST_EPISODES = SEEDS_APART // TRIES
 ROOM = 0.22
 """Radius (m) of the disc for which there must be a path: half the width of a detection line."""
 COUNTS = (25, 50, 75, 100)
