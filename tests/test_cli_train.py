@@ -25,12 +25,11 @@ from fuzzyq_bullet.cli import app
 from fuzzyq_bullet.cli.train import _Progress
 from fuzzyq_bullet.experiments.figures.learning_curve import MARKS, picture
 from fuzzyq_bullet.learning import load_policy
-from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve
+from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve, last_mean
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.resources import asset
 from fuzzyq_bullet.scenario import dump_scenario, parse_scenario
 from fuzzyq_bullet.training.config import SHIPPED, TrainingConfig
-from fuzzyq_bullet.training.curves import last_mean
 from fuzzyq_bullet.training.registry import RECIPES
 
 PLANNER = "fuzzy-q-lambda"

@@ -150,7 +150,7 @@ class _Progress:
 
     def shown(self, total: int, show: Callable[[str, int], None]) -> Callable[[Curve], None]:
         """Return what is to be called after every episode; the clock starts now."""
-        from fuzzyq_bullet.training.curves import WINDOW, success
+        from fuzzyq_bullet.learning.checkpoint import WINDOW, success
 
         self._began = time.perf_counter()
 
@@ -332,7 +332,7 @@ def _title(config: TrainingConfig, tasks: Tasks) -> str:
 def _summary(
     config: TrainingConfig, curve: Curve, progress: _Progress, files: _Files
 ) -> dict[str, Any]:
-    from fuzzyq_bullet.training.curves import WINDOW, success
+    from fuzzyq_bullet.learning.checkpoint import WINDOW, success
     from fuzzyq_bullet.version import __version__
 
     window = min(WINDOW, len(curve))

@@ -1,4 +1,4 @@
-"""Checkpoints: the state of a training after each episode, kept on disk to resume it from.
+"""A training after each episode: its learning curve, and the checkpoint to resume it from.
 
 Eligibility traces end with their episode and random streams begin with it, so there is little to
 keep: the table, the learning curve so far, and what the training was begun with.
@@ -29,6 +29,10 @@ ROW = np.dtype([("total", "<f8"), ("steps", "<i4"), ("outcome", "S16")])
 FORMAT = 1
 LARGEST = 1e9
 """Greatest value of a table. A training that gets beyond it diverges."""
+WINDOW = 50
+"""Number of episodes in a running mean."""
+SUCCESS = b"goal"
+"""The outcome of a successful episode."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,3 +138,25 @@ def _is_told(curve: Curve) -> bool:
 
 def _shown(value: Any) -> str:
     return "nothing" if value is None else ascii(value).strip("'")[:60]
+
+
+def reached(curve: Curve) -> NDArray[np.bool_]:
+    """Return which episodes reached the goal, shape (N,)."""
+    return np.asarray(curve["outcome"] == SUCCESS)
+
+
+def success(curve: Curve) -> float:
+    """Return the share of episodes that reached the goal; NaN if there are no episodes."""
+    return float(reached(curve).mean()) if len(curve) else float("nan")
+
+
+def last_mean(values: NDArray[Any], window: int = WINDOW) -> Floats:
+    """Return the running mean over the last ``window`` values, shape (N,).
+
+    At the beginning, where there are fewer, it is the mean of those.
+    """
+    count = len(values)
+    sums = np.concatenate([[0.0], np.cumsum(values, dtype=float)])
+    last = np.arange(1, count + 1)
+    first = np.maximum(last - window, 0)
+    return np.asarray((sums[last] - sums[first]) / (last - first))

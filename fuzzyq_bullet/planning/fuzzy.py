@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from fuzzyq_bullet.fuzzy.controller import Inference
+from fuzzyq_bullet.fuzzy.inference import Inference
 from fuzzyq_bullet.fuzzy.paper import paper_controller
 from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
 from fuzzyq_bullet.planning.decision import Decision
