@@ -160,7 +160,7 @@ def test_the_command_in_a_policy_makes_its_bytes_again_over_whatever_was_begun(
 
 
 def test_a_policy_says_how_it_was_made(whole: Files) -> None:
-    policy = load_policy(whole.policy, RECIPES[PLANNER].expected)
+    policy = load_policy(whole.policy, RECIPES[PLANNER].spec)
     assert (policy.planner, policy.drive, policy.seed, policy.episodes) == (
         PLANNER,
         "kinematic",
@@ -420,7 +420,7 @@ def test_a_shipped_policy_is_what_its_command_makes(planner: str) -> None:
     if not shipped(planner).exists():
         pytest.skip("not shipped yet")
     config = SHIPPED[planner]
-    policy = load_policy(shipped(config.planner), RECIPES[config.planner].expected)
+    policy = load_policy(shipped(config.planner), RECIPES[config.planner].spec)
     assert policy.command == config.command
     assert (policy.episodes, policy.drive, policy.seed) == (
         config.episodes,
