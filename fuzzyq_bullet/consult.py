@@ -14,7 +14,7 @@ import numpy as np
 
 from fuzzyq_bullet.errors import PlannerError, Stopped, UserError
 from fuzzyq_bullet.planning import Observation, Planner, PlannerSettings, make_planner
-from fuzzyq_bullet.planning.validation import DecisionError
+from fuzzyq_bullet.planning.decision import DecisionError
 from fuzzyq_bullet.wording import error_in_words
 
 _PACKAGE = Path(__file__).resolve().parent

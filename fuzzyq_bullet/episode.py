@@ -15,8 +15,7 @@ from fuzzyq_bullet.drives.pilot import Twist
 from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner
-from fuzzyq_bullet.planning.validation import DecisionError, checked
-from fuzzyq_bullet.recorder import recorded
+from fuzzyq_bullet.planning.decision import DecisionError, checked
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.models import Limits, Scenario
 from fuzzyq_bullet.trajectory import Outcome, Trajectory
@@ -150,7 +149,7 @@ class Episode:
         """
         if self.outcome is None:
             raise ValueError("the episode is not over")
-        return recorded(self._scenario, self._field, self._driver, self._decisions, self.outcome)
+        return self._recorded(self._decisions, self.outcome)
 
     def so_far(self, told: Decision) -> Trajectory:
         """Return what has happened until now, for a picture of it.
@@ -162,8 +161,19 @@ class Episode:
             A trajectory; while the episode goes on, one that the time has run out for.
         """
         decisions = [*self._decisions, (len(self._driver.ticks) - 1, checked(told))]
-        outcome = self.outcome or "timeout"
-        return recorded(self._scenario, self._field, self._driver, decisions, outcome)
+        return self._recorded(decisions, self.outcome or "timeout")
+
+    def _recorded(self, decisions: list[tuple[int, Decision]], outcome: Outcome) -> Trajectory:
+        driver = self._driver
+        return Trajectory.from_episode(
+            self._scenario,
+            self._field,
+            driver.ticks,
+            decisions,
+            outcome=outcome,
+            physics_steps=driver.steps,
+            collision=driver.collision,
+        )
 
     def _note(self, decision: Decision) -> Decision:
         if self.outcome is not None:

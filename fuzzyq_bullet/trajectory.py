@@ -8,19 +8,23 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, make_dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field, ValidationError
 
 from fuzzyq_bullet.archive import read_arrays
+from fuzzyq_bullet.columns import FAR, Column, check_arrays, columns_of, csv_of, documented
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
-from fuzzyq_bullet.planning.base import MODES
-from fuzzyq_bullet.scenario.models import ANY_NAME, Scenario
+from fuzzyq_bullet.geometry import Field as Obstacles
+from fuzzyq_bullet.planning.decision import FIELDS, Decision
+from fuzzyq_bullet.scenario.models import ANY_NAME, ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.version import __version__
 
 Floats: TypeAlias = NDArray[np.float64]
 Outcome: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
@@ -28,82 +32,61 @@ Outcome: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
 FORMAT = 2
 LONGEST = 7200.0
 """Longest run that is read (s): twice the greatest limit of a scenario."""
-_FAR = 1e7
-"""No position (m), angle (rad) or speed of a run comes near this."""
+
+_XY = ("x", "y")
+_SIDES = ("left", "right")
 
 
 @dataclass(frozen=True, eq=False)
 class Ticks:
     """The robot's state at every tick of the drive, first the start and last the end.
 
-    ``T`` ticks; one every 0.15 s with wheels, one for each step (Eq. 17) in the kinematic drive.
-
-    Attributes:
-        time: Simulated time (s), shape (T,), increasing.
-        position: Centre of the robot (m), shape (T, 2).
-        heading: Direction it faces (rad), shape (T,).
-        speed: Forward speed (m/s), shape (T,).
-        turn_rate: Turn rate (rad/s), shape (T,).
-        wheel_speeds: Speeds of the left and right wheel (rad/s), shape (T, 2).
-        clearance: Distance to the nearest obstacle or wall (m), shape (T,); negative where the two
-            overlap, inf when there is none. In the kinematic drive, whose moves may be long, the
-            least since the tick before.
+    One every 0.15 s with wheels, one for each step (Eq. 17) in the kinematic drive. Every array
+    has a row for each of the T ticks.
     """
 
-    time: Floats
-    position: Floats
-    heading: Floats
-    speed: Floats
-    turn_rate: Floats
-    wheel_speeds: Floats
-    clearance: Floats
+    time: Annotated[Floats, Column("s", "Simulated time, increasing.")]
+    position: Annotated[Floats, Column("m", "Centre of the robot, world frame.", (_XY,))]
+    heading: Annotated[Floats, Column("rad", "Direction the robot faces, anticlockwise from x.")]
+    speed: Annotated[Floats, Column("m/s", "Forward speed.")]
+    turn_rate: Annotated[Floats, Column("rad/s", "Turn rate, positive to the left.")]
+    wheel_speeds: Annotated[Floats, Column("rad/s", "Speeds of the two wheels.", (_SIDES,))]
+    clearance: Annotated[
+        Floats,
+        Column(
+            "m",
+            "Distance to the nearest obstacle or wall: negative where the two overlap, infinite "
+            "when there is none. In the kinematic drive, the least since the tick before.",
+            endless=True,
+        ),
+    ]
 
 
-@dataclass(frozen=True, eq=False)
-class Decisions:
-    """Every decision of the planner, with all that explains it. ``D`` decisions.
+TICKS = columns_of(Ticks)
+DECISIONS = {
+    "tick": Column("", "Index of the tick at which it was taken, non-decreasing.", whole=True),
+    **FIELDS,
+}
+"""All columns of a record: a row of ``TICKS`` for each tick, of ``DECISIONS`` for each decision."""
+Ticks.__doc__ = documented(Ticks.__doc__, TICKS)
+_DECISIONS_DOC = "Every decision of the planner, with all that explains it: D rows in each array."
 
-    Fields have the meaning and units of ``planning.base.Decision``.
+if TYPE_CHECKING:
 
-    Attributes:
-        tick: Index of the tick at which it was taken, shape (D,), integers, non-decreasing.
-        heading: Shape (D,).
-        step: Shape (D,).
-        reach: Shape (D,).
-        mode: Index into ``planning.base.MODES``, shape (D,), integers.
-        lines: Shape (D, 3): left, middle, right.
-        lengths: Shape (D, 3): left, middle, right.
-        distance: Shape (D,).
-        difference: Shape (D,).
-        near: Shape (D, 5).
-        side: Shape (D, 5).
-        rules: Shape (D, 5, 5).
-        turn: Shape (D,).
-        stride: Shape (D,).
-        weights: Shape (D, 2).
-        breakout_at: Shape (D,).
-        guard: Shape (D,).
-        target: Shape (D, 2).
-    """
+    class Decisions:
+        """Every decision of the planner, with all that explains it: an array for each column."""
 
-    tick: NDArray[np.int64]
-    heading: Floats
-    step: Floats
-    reach: Floats
-    mode: NDArray[np.int64]
-    lines: Floats
-    lengths: Floats
-    distance: Floats
-    difference: Floats
-    near: Floats
-    side: Floats
-    rules: Floats
-    turn: Floats
-    stride: Floats
-    weights: Floats
-    breakout_at: Floats
-    guard: Floats
-    target: Floats
+        def __init__(self, **columns: NDArray[Any]) -> None: ...
+        def __getattr__(self, name: str) -> NDArray[Any]: ...
+
+else:
+    Decisions = make_dataclass(
+        "Decisions",
+        [(name, NDArray) for name in DECISIONS],
+        frozen=True,
+        eq=False,
+        namespace={"__module__": __name__, "__doc__": documented(_DECISIONS_DOC, DECISIONS)},
+    )
 
 
 @dataclass(frozen=True)
@@ -146,6 +129,60 @@ class Trajectory:
     ticks: Ticks
     decisions: Decisions
     version: str
+
+    @classmethod
+    def from_episode(
+        cls,
+        scenario: Scenario,
+        field: Obstacles,
+        states: Sequence[Sequence[float]],
+        decisions: Sequence[tuple[int, Decision]],
+        *,
+        outcome: Outcome,
+        physics_steps: int,
+        collision: Collision | None,
+    ) -> Trajectory:
+        """Return the record of an episode.
+
+        Args:
+            scenario: The scenario as it ran, every obstacle listed.
+            field: Its obstacles and walls.
+            states: The robot at every tick: time, x, y, heading, speed, turn rate and the speeds of
+                the left and right wheel.
+            decisions: Each decision with the index of the tick it was taken at.
+            outcome: How the episode ended.
+            physics_steps: Steps of the simulation.
+            collision: The contact that ended it, if one did.
+        """
+        at = np.array(states, dtype=np.float64)
+        return cls(
+            scenario=scenario,
+            outcome=outcome,
+            physics_steps=physics_steps,
+            collision=collision,
+            ticks=Ticks(
+                time=at[:, 0],
+                position=at[:, 1:3],
+                heading=at[:, 3],
+                speed=at[:, 4],
+                turn_rate=at[:, 5],
+                wheel_speeds=at[:, 6:8],
+                clearance=_clearance(field, at[:, 1:3], scenario.drive) - ROBOT_RADIUS,
+            ),
+            decisions=Decisions(
+                tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
+                **{
+                    name: _array(column, [getattr(decision, name) for _, decision in decisions])
+                    for name, column in FIELDS.items()
+                },
+            ),
+            version=__version__,
+        )
+
+    def csv(self, group: Literal["ticks", "decisions"]) -> str:
+        """Return the ticks or the decisions as CSV; docs/record.md describes the columns."""
+        columns = TICKS if group == "ticks" else DECISIONS
+        return csv_of(columns, vars(getattr(self, group)))
 
     def __repr__(self) -> str:
         scenario, ticks = self.scenario, self.ticks
@@ -220,8 +257,8 @@ class Trajectory:
             raise UserError(f"{path}: a record of format {shown}; this version reads {FORMAT}")
         try:
             head = _Head.model_validate(meta, context=ANY_NAME)
-            ticks = Ticks(**_columns(arrays, "ticks", Ticks))
-            decisions = Decisions(**_columns(arrays, "decisions", Decisions))
+            ticks = Ticks(**check_arrays("ticks", TICKS, arrays))
+            decisions = Decisions(**check_arrays("decisions", DECISIONS, arrays))
             _check(ticks, decisions)
             _check_collision(head.collision, head.scenario)
         except ValidationError as error:
@@ -242,9 +279,9 @@ class Trajectory:
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
         return {
-            f"{group}.{column.name}": getattr(getattr(self, group), column.name)
-            for group, kind in (("ticks", Ticks), ("decisions", Decisions))
-            for column in fields(kind)
+            f"{group}.{name}": array
+            for group in ("ticks", "decisions")
+            for name, array in vars(getattr(self, group)).items()
         }
 
 
@@ -258,42 +295,23 @@ class _Head(BaseModel):
     scenario: Scenario
 
 
-_SHAPES: dict[str, tuple[int, ...]] = {
-    "position": (2,),
-    "wheel_speeds": (2,),
-    "lines": (3,),
-    "lengths": (3,),
-    "near": (5,),
-    "side": (5,),
-    "rules": (5, 5),
-    "weights": (2,),
-    "target": (2,),
-}
-"""Shape of one row of each column that is not a plain number."""
-_INTEGERS = ("tick", "mode")
+def _clearance(field: Obstacles, positions: Floats, drive: str) -> Floats:
+    """Return how far everything is from the robot's centre (m), shape (T,).
 
-
-def _columns(arrays: dict[str, NDArray[Any]], group: str, kind: type) -> dict[str, NDArray[Any]]:
-    """Return the columns of a group, all of one length, each of its type and shape.
-
-    Raises:
-        ValueError: If one is missing or of another type, length or shape.
+    The point robot's moves may be long: what counts is the least on the way to each tick.
     """
-    columns: dict[str, NDArray[Any]] = {}
-    rows = None
-    for column in fields(kind):
-        name = f"{group}.{column.name}"
-        if name not in arrays:
-            raise ValueError(f"{name} is missing")
-        array = arrays[name]
-        rows = array.shape[:1] if rows is None else rows
-        expected = np.int64 if column.name in _INTEGERS else np.float64
-        if array.dtype != expected:
-            raise ValueError(f"{name} holds {array.dtype} instead of {np.dtype(expected)}")
-        if not rows or rows == (0,) or array.shape != rows + _SHAPES.get(column.name, ()):
-            raise ValueError(f"{name} is of the wrong shape {array.shape}")
-        columns[column.name] = array
-    return columns
+    if drive == "kinematic":
+        return field.clearance_on_ways(positions[[0, *range(len(positions) - 1)]], positions)[0]
+    return field.clearance(positions)
+
+
+def _array(column: Column, values: list[Any]) -> NDArray[Any]:
+    """Return what was decided as an array: of words, their numbers."""
+    if column.words:
+        return np.array([column.words.index(word) for word in values], dtype=column.dtype)
+    array = np.array(values, dtype=column.dtype).reshape(len(values), *column.shape)
+    # What a planner cannot put into a number is not explained; only a reach may be endless.
+    return array if column.endless else np.where(np.isinf(array), np.nan, array)
 
 
 def _check(ticks: Ticks, decisions: Decisions) -> None:
@@ -302,28 +320,13 @@ def _check(ticks: Ticks, decisions: Decisions) -> None:
     Raises:
         ValueError: If a run cannot have left these numbers.
     """
-    for name in ("time", "position", "heading", "speed", "turn_rate", "wheel_speeds"):
-        if not (np.abs(getattr(ticks, name)) < _FAR).all():
-            raise ValueError(f"ticks.{name} holds a number that is not finite, or is absurd")
-    if np.isnan(ticks.clearance).any():
-        raise ValueError("ticks.clearance holds a value that is not a number")
     if not (np.diff(ticks.time) > 0).all():
         raise ValueError("ticks.time does not increase")
     if ticks.time[-1] - ticks.time[0] > LONGEST:
         raise ValueError(f"ticks.time spans more than {LONGEST:g} s")
-    for column in fields(decisions):
-        values = getattr(decisions, column.name)
-        if column.name not in ("heading", "step"):  # only these are never left blank
-            values = values[~np.isnan(values)]
-        if column.name == "reach":  # nothing was looked at, so nothing is known to end
-            values = values[values != np.inf]
-        if not (np.abs(values) < _FAR).all():
-            raise ValueError(f"decisions.{column.name} holds a number that is absurd")
     tick, last = decisions.tick, ticks.time.size - 1
     if tick.min() < 0 or tick.max() > last or (np.diff(tick) < 0).any():
         raise ValueError(f"decisions.tick does not run upwards within 0 to {last}")
-    if decisions.mode.min() < 0 or decisions.mode.max() >= len(MODES):
-        raise ValueError(f"decisions.mode leaves the range 0 to {len(MODES) - 1}")
 
 
 def _check_collision(collision: Collision | None, scenario: Scenario) -> None:
@@ -335,7 +338,7 @@ def _check_collision(collision: Collision | None, scenario: Scenario) -> None:
     if collision is None:
         return
     numbers = (collision.time, *collision.point, collision.normal_force)
-    if not all(abs(number) < _FAR for number in numbers):
+    if not all(abs(number) < FAR for number in numbers):
         raise ValueError("collision holds a number that is not finite, or is absurd")
     if not -1 <= collision.obstacle < len(scenario.obstacles):
         raise ValueError(f"collision.obstacle: there is no obstacle {collision.obstacle}")

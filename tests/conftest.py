@@ -20,7 +20,7 @@ hypothesis.settings.register_profile("fuzzyq", deadline=None, max_examples=50)
 hypothesis.settings.load_profile("fuzzyq")
 
 SLOW = (
-    *("check", "cli_interrupt", "cli_train", "cluster", "escape_memory", "escape_table"),
+    *("check", "cli_interrupt", "cli_train", "cluster", "exploration", "escape_table"),
     *("figure_panels", "gym", "layouts", "learned_weights", "learning_gain", "learning_training"),
     *("oracle", "package", "pythons", "report", "success", "sweep", "video", "video_picture"),
 )

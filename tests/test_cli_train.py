@@ -24,15 +24,13 @@ from fuzzyq_bullet import Trajectory, UserError, load_scenario, result_of, run, 
 from fuzzyq_bullet.cli import app
 from fuzzyq_bullet.experiments.figures.learning_curve import MARKS, picture
 from fuzzyq_bullet.learning import load_policy
-from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve
+from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve, last_mean
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.resources import asset
 from fuzzyq_bullet.scenario import dump_scenario, parse_scenario
-from fuzzyq_bullet.training.curves import last_mean
-from fuzzyq_bullet.training.order import Order
-from fuzzyq_bullet.training.recipes import RECIPES
+from fuzzyq_bullet.training.config import SHIPPED, TrainingConfig
+from fuzzyq_bullet.training.registry import RECIPES
 from fuzzyq_bullet.training.session import TrainingProgress
-from fuzzyq_bullet.training.shipped import SHIPPED
 
 PLANNER = "fuzzy-q-lambda"
 EPISODES = 12
@@ -162,7 +160,7 @@ def test_the_command_in_a_policy_makes_its_bytes_again_over_whatever_was_begun(
 
 
 def test_a_policy_says_how_it_was_made(whole: Files) -> None:
-    policy = load_policy(whole.policy, RECIPES[PLANNER].expected)
+    policy = load_policy(whole.policy, RECIPES[PLANNER].spec)
     assert (policy.planner, policy.drive, policy.seed, policy.episodes) == (
         PLANNER,
         "kinematic",
@@ -173,8 +171,8 @@ def test_a_policy_says_how_it_was_made(whole: Files) -> None:
 
 
 def test_a_path_of_any_letters_stands_in_the_command_as_a_shell_reads_it() -> None:
-    order = Order(PLANNER, scenario="my fields/it's one.yaml")
-    assert shlex.split(order.command)[-1] == order.scenario
+    config = TrainingConfig(PLANNER, scenario="my fields/it's one.yaml")
+    assert shlex.split(config.command)[-1] == config.scenario
 
 
 # --- mistakes
@@ -421,16 +419,16 @@ def test_the_bar_tells_success_and_rate() -> None:
 def test_a_shipped_policy_is_what_its_command_makes(planner: str) -> None:
     if not shipped(planner).exists():
         pytest.skip("not shipped yet")
-    order = SHIPPED[planner]
-    policy = load_policy(shipped(order.planner), RECIPES[order.planner].expected)
-    assert policy.command == order.command
+    config = SHIPPED[planner]
+    policy = load_policy(shipped(config.planner), RECIPES[config.planner].spec)
+    assert policy.command == config.command
     assert (policy.episodes, policy.drive, policy.seed) == (
-        order.episodes,
-        order.drive,
-        order.seed,
+        config.episodes,
+        config.drive,
+        config.seed,
     )
-    assert order.scenario is None
-    assert policy.scenario == RECIPES[planner].tasks(order.drive, order.seed).digest()
+    assert config.scenario is None
+    assert policy.scenario == RECIPES[planner].tasks(config.drive, config.seed).digest()
 
 
 def test_every_shipped_policy_has_a_command_and_every_command_a_planner_that_learns() -> None:
@@ -439,8 +437,8 @@ def test_every_shipped_policy_has_a_command_and_every_command_a_planner_that_lea
 
 
 def test_make_reads_the_commands_from_where_they_are(capsys: pytest.CaptureFixture[str]) -> None:
-    runpy.run_path(sys.modules["fuzzyq_bullet.training.shipped"].__file__ or "", None, "__main__")
-    assert capsys.readouterr().out.splitlines() == [order.command for order in SHIPPED.values()]
+    runpy.run_path(sys.modules["fuzzyq_bullet.training.config"].__file__ or "", None, "__main__")
+    assert capsys.readouterr().out.splitlines() == [config.command for config in SHIPPED.values()]
 
 
 @pytest.mark.parametrize(

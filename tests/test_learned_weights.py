@@ -22,15 +22,20 @@ from fuzzyq_bullet.planning import (
     ImprovedFuzzySettings,
     make_planner,
 )
-from fuzzyq_bullet.planning.base import MODES, Mode
-from fuzzyq_bullet.planning.encounter import Encounters
+from fuzzyq_bullet.planning.decision import MODES, Mode
+from fuzzyq_bullet.planning.fuzzy import Situation
+from fuzzyq_bullet.planning.fuzzy_q_lambda import (
+    ACTION_NAMES,
+    ACTIONS,
+    STATE_NAMES,
+    OptionTermination,
+    features_of,
+)
 from fuzzyq_bullet.planning.policies import shipped
-from fuzzyq_bullet.planning.routine import Situation
-from fuzzyq_bullet.planning.weighing import ACTION_NAMES, ACTIONS, STATE_NAMES, features_of
 from fuzzyq_bullet.scenario import Scenario, Start, load_scenario, random_task, realise
+from fuzzyq_bullet.training.distance_field import DistanceField
+from fuzzyq_bullet.training.problems import WeightsProblem
 from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM, TRIES, Tasks
-from fuzzyq_bullet.training.ways import Ways
-from fuzzyq_bullet.training.weights import WeightsProblem
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -98,11 +103,11 @@ def test_the_strongest_feature_is_called_by_what_there_is() -> None:
 def test_a_choice_stands_until_the_robot_is_nearer_than_ever_and_on_no_way_out(
     seen: list[tuple[float, Mode, bool]],
 ) -> None:
-    encounters, nearest, chosen, was_clear = Encounters(), math.inf, math.inf, False
+    encounters, nearest, chosen, was_clear = OptionTermination(), math.inf, math.inf, False
     for to_goal, mode, clear in seen:
         enough = 0.2 if clear != was_clear else 1.0
         wanted = mode == "routine" and to_goal <= nearest and to_goal <= chosen - enough
-        assert encounters.begins(to_goal, mode, clear=clear) == wanted
+        assert encounters.ends(to_goal, mode, clear=clear) == wanted
         nearest = min(nearest, to_goal)
         if wanted:
             chosen, was_clear = to_goal, clear
@@ -185,7 +190,7 @@ def test_a_policy_for_other_states_is_refused(tmp_path: Path) -> None:
 
 
 def test_what_an_episode_earns_is_its_delay(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fuzzyq_bullet.training.weights.MOST_LOST", math.inf)
+    monkeypatch.setattr("fuzzyq_bullet.training.problems.MOST_LOST", math.inf)
     tasks = Tasks(drive="wheels", scenario=load_scenario("u-shape"))
     problem = WeightsProblem(tasks)
     problem.reset(1)
@@ -195,7 +200,7 @@ def test_what_an_episode_earns_is_its_delay(monkeypatch: pytest.MonkeyPatch) -> 
         total, steps = total + reward, steps + 1
     assert problem.outcome == "goal"
     scenario = tasks.scenario_of(1)
-    way = Ways(scenario).from_here(*scenario.start.position)
+    way = DistanceField(scenario).at(*scenario.start.position)
     assert way > math.dist(scenario.start.position, scenario.goal.position) + 0.4
     # The same drive once more, for its time. All but the last few centimetres within the goal.
     fixed = ImprovedFuzzySettings(weights=ACTIONS[-1][:2], breakout_at=ACTIONS[-1].breakout_at)
@@ -206,7 +211,7 @@ def test_what_an_episode_earns_is_its_delay(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_long_search_counts_for_no_more_than_the_most(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fuzzyq_bullet.training.weights.MOST_LOST", 0.25)
+    monkeypatch.setattr("fuzzyq_bullet.training.problems.MOST_LOST", 0.25)
     problem = WeightsProblem(Tasks(drive="wheels", scenario=load_scenario("u-shape")))
     problem.reset(1)
     earned, over = [], False
@@ -235,7 +240,7 @@ def test_a_field_without_a_way_is_drawn_anew() -> None:
 @pytest.mark.parametrize("seed", [1])
 def test_ways_are_those_of_the_oracle(seed: int) -> None:
     scenario = realise(random_task(seed, count=60))
-    ways, rng = Ways(scenario), np.random.default_rng([seed, 77])
+    distances, rng = DistanceField(scenario), np.random.default_rng([seed, 77])
     checked = 0
     for x, y in rng.uniform(0.5, 9.5, (40, 2)):
         there = scenario.model_copy(update={"start": Start(position=(float(x), float(y)))})
@@ -244,7 +249,7 @@ def test_ways_are_those_of_the_oracle(seed: int) -> None:
         if least is None or most is None or most.length == 0.0:
             continue
         checked += 1
-        length = ways.from_here(float(x), float(y)) - scenario.goal.radius  # not to its centre
+        length = distances.at(float(x), float(y)) - scenario.goal.radius  # not to its centre
         assert least.length - 0.05 <= length <= 1.06 * most.length + 0.1
     assert checked > 15
 
@@ -262,7 +267,7 @@ def test_ways_are_finite_where_there_is_none() -> None:
             "obstacles": obstacles,
         }
     )
-    ways = Ways(scenario)
+    distances = DistanceField(scenario)
     places = [(1.0, 5.0), (5.0, 5.0), (0.0, 0.0), (9.0, 5.0), (8.0, 2.0)]
-    assert all(math.isfinite(ways.from_here(*place)) for place in places)
-    assert ways.from_here(9.0, 5.0) < 0.1
+    assert all(math.isfinite(distances.at(*place)) for place in places)
+    assert distances.at(9.0, 5.0) < 0.1

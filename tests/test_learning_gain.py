@@ -53,10 +53,10 @@ from fuzzyq_bullet.experiments.learning_gain.table import (
 from fuzzyq_bullet.experiments.sweep.jobs import Environment
 from fuzzyq_bullet.experiments.sweep.rows import Row
 from fuzzyq_bullet.learning import Policy
+from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, Weights
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
-from fuzzyq_bullet.planning.weighing import ACTIONS, Weights
 from fuzzyq_bullet.scenario import realise
-from fuzzyq_bullet.training.recipes import learn, recipe_of
+from fuzzyq_bullet.training.registry import learn, recipe_of
 from fuzzyq_bullet.training.tasks import FIRST_SEED, Tasks
 
 SLOW, FAST = HALF, ONE

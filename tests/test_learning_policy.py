@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.learning import Expected, Policy, QLambda, Setup, load_policy, train
+from fuzzyq_bullet.learning import Policy, PolicySpec, QLambda, Setup, load_policy, train
 from fuzzyq_bullet.learning.policy import MAX_BYTES
 from fuzzyq_bullet.learning.toys import Corridor
 from fuzzyq_bullet.version import __version__
@@ -45,10 +45,10 @@ def trained(**changes: Any) -> Policy:
 
 
 GOOD = json.loads(trained().dumps())
-EXPECTED = Expected("corridor", STATES, ACTIONS, "q-lambda")
+POLICY_SPEC = PolicySpec("corridor", STATES, ACTIONS, "q-lambda")
 
 
-def refusal(path: Path, content: str | bytes, expect: Expected | None = None) -> str:
+def refusal(path: Path, content: str | bytes, expect: PolicySpec | None = None) -> str:
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     with pytest.raises(UserError) as caught:
         load_policy(path, expect)
@@ -65,7 +65,7 @@ def refusal(path: Path, content: str | bytes, expect: Expected | None = None) ->
 def test_a_policy_reads_back_as_it_was_and_fits_its_planner(tmp_path: Path) -> None:
     path, policy = tmp_path / "policy.json", trained()
     policy.save(path)
-    assert load_policy(path, EXPECTED) == policy
+    assert load_policy(path, POLICY_SPEC) == policy
     assert policy.array().shape == (4, 2)
     assert policy.array().tolist() == [list(row) for row in policy.table]
 
@@ -138,34 +138,34 @@ def test_an_unwritable_place_is_told_and_what_was_there_stays(tmp_path: Path) ->
     ("expect", "complaint"),
     [
         (
-            Expected("maze", STATES, ACTIONS),
+            PolicySpec("maze", STATES, ACTIONS),
             ": is a policy of the planner 'corridor'; one of 'maze'",
         ),
         (
-            Expected("corridor", STATES, ACTIONS, "linear-q-lambda"),
+            PolicySpec("corridor", STATES, ACTIONS, "linear-q-lambda"),
             "one that was learned by 'linear",
         ),
-        (Expected("corridor", STATES[:3], ACTIONS), ": has 4 states; corridor has 3"),
-        (Expected("corridor", STATES, ("forth",)), ": has 2 actions; corridor has 1"),
+        (PolicySpec("corridor", STATES[:3], ACTIONS), ": has 4 states; corridor has 3"),
+        (PolicySpec("corridor", STATES, ("forth",)), ": has 2 actions; corridor has 1"),
         (
-            Expected("corridor", STATES, ACTIONS[::-1]),
+            PolicySpec("corridor", STATES, ACTIONS[::-1]),
             ": actions: number 0 is 'back'; that of corr",
         ),
         (
-            Expected("corridor", (*STATES[:3], "x"), ACTIONS),
+            PolicySpec("corridor", (*STATES[:3], "x"), ACTIONS),
             ": states: number 3 is 'place 3'; that",
         ),
     ],
 )
 def test_a_policy_of_another_planner_is_refused(
-    tmp_path: Path, expect: Expected, complaint: str
+    tmp_path: Path, expect: PolicySpec, complaint: str
 ) -> None:
     assert complaint in refusal(tmp_path / "policy.json", trained().dumps(), expect)
 
 
 def test_whatever_learner_will_do_if_none_is_asked_for(tmp_path: Path) -> None:
     trained().save(tmp_path / "policy.json")
-    load_policy(tmp_path / "policy.json", Expected("corridor", list(STATES), list(ACTIONS)))
+    load_policy(tmp_path / "policy.json", PolicySpec("corridor", list(STATES), list(ACTIONS)))
 
 
 # Bad files

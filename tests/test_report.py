@@ -30,7 +30,7 @@ from fuzzyq_bullet.experiments.sweep.folder import Folder
 from fuzzyq_bullet.experiments.sweep.jobs import Job
 from fuzzyq_bullet.experiments.sweep.rows import Row, as_csv, from_csv
 from fuzzyq_bullet.planning import settings_for
-from fuzzyq_bullet.planning.weighing import Weights
+from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 from fuzzyq_bullet.version import __version__
 
 PLANNERS = ("fuzzy", "fuzzy-q-lambda")

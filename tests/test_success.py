@@ -28,7 +28,7 @@ from fuzzyq_bullet.experiments.success.table import summary_of
 from fuzzyq_bullet.experiments.sweep.rows import Row
 from fuzzyq_bullet.experiments.wilson import share
 from fuzzyq_bullet.planning import settings_for
-from fuzzyq_bullet.planning.weighing import Weights
+from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 
 PAIR = Weights(1.5, 0.5, 1.0)
 

@@ -13,7 +13,8 @@ import pytest
 from synthetic import drive, modes, scenario
 
 from fuzzyq_bullet import episode
-from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
+from fuzzyq_bullet.planning.base import STEP_UNIT
+from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.scenario import load_scenario
 from fuzzyq_bullet.trajectory import Collision
 from fuzzyq_bullet.video.captions import Story

@@ -59,8 +59,8 @@ def learning(
         learned_settings,
         unseen,
     )
+    from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
     from fuzzyq_bullet.planning.policies import policy_of
-    from fuzzyq_bullet.planning.weighing import EXPECTED
     from fuzzyq_bullet.training.tasks import FIRST_SEED
 
     if not 0 <= seed <= MOST_SEED:
@@ -70,7 +70,7 @@ def learning(
         raise UserError("--counts: none leaves nothing to compare on")
     moved_by = one_drive_of(drive)
     settings = learned_settings(policy)
-    learned = policy_of(settings, EXPECTED)
+    learned = policy_of(settings, POLICY_SPEC)
 
     from fuzzyq_bullet.experiments.learning_gain import candidates
     from fuzzyq_bullet.experiments.learning_gain.choice import best_of

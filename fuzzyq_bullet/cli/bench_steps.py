@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.experiments.sweep.jobs import Job
     from fuzzyq_bullet.experiments.sweep.rows import Row
     from fuzzyq_bullet.experiments.sweep.workers import Pool
-    from fuzzyq_bullet.planning.weighing import Weights
+    from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
     from fuzzyq_bullet.scenario import Drive
 
 
@@ -117,7 +117,7 @@ def _pair_of(text: str) -> Weights:
     from fuzzyq_bullet.cli.sweep import planner_of
     from fuzzyq_bullet.experiments.learning_gain.candidates import USUAL_BREAKOUT
     from fuzzyq_bullet.planning import ImprovedFuzzySettings
-    from fuzzyq_bullet.planning.weighing import Weights
+    from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 
     try:
         settings = planner_of("improved-fuzzy", text)
@@ -136,10 +136,10 @@ def _search(
     from fuzzyq_bullet.experiments.learning_gain.candidates import PAIRS, words_of
     from fuzzyq_bullet.experiments.learning_gain.choice import best_of
     from fuzzyq_bullet.experiments.learning_gain.plan import Search, learned_settings
+    from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
     from fuzzyq_bullet.planning.policies import policy_of
-    from fuzzyq_bullet.planning.weighing import EXPECTED
 
-    learned = policy_of(learned_settings(None), EXPECTED)
+    learned = policy_of(learned_settings(None), POLICY_SPEC)
     search = Search(drive, learned.seed, grid, PAIRS)
     rows = _swept("grid", search.jobs(), search.described() | plugins, out / "grid", pool)
     best = best_of(rows, PAIRS).best

@@ -14,7 +14,7 @@ from fuzzyq_bullet.errors import Stopped, UserError
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.learning.checkpoint import Curve
-    from fuzzyq_bullet.training.order import Order
+    from fuzzyq_bullet.training.config import TrainingConfig
     from fuzzyq_bullet.training.session import TrainingFiles, TrainingProgress
     from fuzzyq_bullet.training.tasks import Tasks
 
@@ -62,16 +62,16 @@ def train(
     from fuzzyq_bullet.training.session import (
         TrainingFiles,
         TrainingProgress,
+        config_for,
         episodes_done,
         episodes_kept,
-        order_for,
         summary_of,
         tasks_for,
     )
 
-    order = order_for(planner, episodes, drive, seed, scenario)
-    files = TrainingFiles.of(order.planner, out)
-    tasks = tasks_for(order)
+    config = config_for(planner, episodes, drive, seed, scenario)
+    files = TrainingFiles.of(config.planner, out)
+    tasks = tasks_for(config)
     files.check()
     from fuzzyq_bullet.scenario import find_scenario
 
@@ -79,50 +79,55 @@ def train(
     refuse_inputs(files.all, [*read, *plugin_inputs(plugin or [])])
     try:
         with alone_at(files.checkpoint):
-            done = episodes_done(order, tasks, files, resume=resume, anew=anew)
+            done = episodes_done(config, tasks, files, resume=resume, anew=anew)
             progress = TrainingProgress(done)
-            curve = _learn(order, tasks, files, progress, resume=resume)
+            curve = _learn(config, tasks, files, progress, resume=resume)
     except Stopped:
         where = [] if out is None else ["--out", out]
-        again = f"{order.command} {shlex.join([*where, '--resume'])}"
+        again = f"{config.command} {shlex.join([*where, '--resume'])}"
         kept = episodes_kept(files.checkpoint)
-        say(f"{kept} of {order.episodes} episodes are kept; to go on: {again}")
+        say(f"{kept} of {config.episodes} episodes are kept; to go on: {again}")
         raise
-    summary = summary_of(order, curve, progress, files)
+    summary = summary_of(config, curve, progress, files)
     if json:
         typer.echo(dumps(summary, indent=2))
-    _tell(order, summary)
+    _tell(config, summary)
 
 
 def _learn(
-    order: Order, tasks: Tasks, files: TrainingFiles, progress: TrainingProgress, *, resume: bool
+    config: TrainingConfig,
+    tasks: Tasks,
+    files: TrainingFiles,
+    progress: TrainingProgress,
+    *,
+    resume: bool,
 ) -> Curve:
     """Train with a progress bar, and draw the learning curve."""
     from fuzzyq_bullet.training.session import learn_policy, title_of
 
-    with progress_bar("training", order.episodes) as (bar, task):
+    with progress_bar("training", config.episodes) as (bar, task):
 
         def show(note: str, done: int) -> None:
             bar.update(task, completed=done, note=note)
 
         show("", progress.before)
-        told = progress.shown(order.episodes, show)
-        curve = learn_policy(order, tasks, files, told, resume=resume)
+        told = progress.shown(config.episodes, show)
+        curve = learn_policy(config, tasks, files, told, resume=resume)
 
     from fuzzyq_bullet.experiments.figures import learning_curve
 
-    learning_curve.draw(curve, title_of(order, tasks), files.picture)
+    learning_curve.draw(curve, title_of(config, tasks), files.picture)
     return curve
 
 
-def _tell(order: Order, summary: dict[str, Any]) -> None:
+def _tell(config: TrainingConfig, summary: dict[str, Any]) -> None:
     rate, before, now = (summary[k] for k in ("episodes_per_s", "episodes_before", "episodes_now"))
     if now:
         pace = f"{now} episodes in {summary['time_s']:.1f} s: {rate:.2f} episodes/s"
         pace += f"; {before} were done already" if before else ""
     else:
         pace = f"all {before} episodes were done already"
-    say(f"{order.planner}: {pace} ({order.drive}, seed {order.seed})", style="bold")
+    say(f"{config.planner}: {pace} ({config.drive}, seed {config.seed})", style="bold")
     first, last = (100 * summary[key] for key in ("success_first", "success_last"))
     window = summary["window"]
     say(f"goal reached in {first:.0f} % of the first {window} episodes, {last:.0f} % of the last")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.scenario.models import Robot
 from fuzzyq_bullet.trajectory import Collision
 

@@ -9,7 +9,8 @@ from fuzzyq_bullet.drives.base import Tick, longest_step_time
 from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
-from fuzzyq_bullet.planning.base import Decision, Observation
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Robot, Scenario
 from fuzzyq_bullet.trajectory import Collision
 

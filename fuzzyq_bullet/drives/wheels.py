@@ -12,7 +12,8 @@ from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.robot import wheel_commands
 from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
-from fuzzyq_bullet.planning.base import Decision, Motion, Observation
+from fuzzyq_bullet.planning.base import Motion, Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Collision
 

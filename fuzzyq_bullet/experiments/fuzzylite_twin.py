@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.fuzzy.controller import FuzzyController
+    from fuzzyq_bullet.fuzzy.inference import FuzzyController
     from fuzzyq_bullet.fuzzy.sets import Variable
 
 

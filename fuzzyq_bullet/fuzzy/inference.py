@@ -1,19 +1,19 @@
 """Product inference, maximum aggregation and the sampled centroid (Eqs. 2–5 and 22).
 
-All that does not depend on the inputs is computed once. What is left of one inference is some
-hundred plain numbers, then three operations on arrays of a thousand.
+``ProductInference`` takes any rule base of two inputs; ``FuzzyController`` names the paper's.
+
+All that does not depend on the inputs is computed once.
 """
 
 from __future__ import annotations
 
 import math
-from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from fuzzyq_bullet.fuzzy.rules import RuleBase
 
@@ -54,7 +54,6 @@ class ProductInference:
         "_moments",
         "_row_sets",
         "_sampled",
-        "_shape",
         "base",
         "samples",
     )
@@ -102,18 +101,17 @@ class ProductInference:
             }
             for k, output in enumerate(base.outputs)
         ]
-        # Where one output has fewer of them, one is repeated, which no maximum notices.
+        # Where there are fewer labels or rules, some are repeated: that changes no maximum.
         most = max(map(len, concluded))
-        self._concluding: list[Callable[[list[float]], tuple[float, ...]]] = []
+        longest = max(len(numbers) for labels in concluded for numbers in labels.values())
+        self._concluding = np.empty((most, count, longest), dtype=np.intp)
         self._sampled = np.empty((most, count, samples))
-        self._shape = (most, count, 1)
         for slot in range(most):
             for k, (output, u, labels) in enumerate(
                 zip(base.outputs, grids, concluded, strict=True)
             ):
                 name = list(labels)[slot % len(labels)]
-                # Twice the first, so that there are always several: of one there is no tuple.
-                self._concluding.append(itemgetter(labels[name][0], *labels[name]))
+                self._concluding[slot, k] = np.resize(labels[name], longest)
                 self._sampled[slot, k] = output.memberships(u)[output.labels.index(name)]
 
     def infer(self, x: float, y: float) -> Fired:
@@ -126,17 +124,14 @@ class ProductInference:
         Returns:
             What fired, and how strongly.
         """
-        # Plain numbers: for so few of them an array costs more than it saves.
-        exp = math.exp
-        row = tuple([exp((x - at) * (x - at) * scale) for at, scale in self._row_sets])
-        column = tuple([exp((y - at) * (y - at) * scale) for at, scale in self._column_sets])
-        rules = tuple([tuple([one * other for other in column]) for one in row])
-        strengths = [strength for rule_row in rules for strength in rule_row]
+        row = tuple([math.exp((x - at) * (x - at) * scale) for at, scale in self._row_sets])
+        column = tuple([math.exp((y - at) * (y - at) * scale) for at, scale in self._column_sets])
+        rules = np.multiply.outer(row, column)
 
         # Eqs. 3 and 4. Rules that conclude the same set differ only by a factor, so the largest
         # of them is that set times the largest strength.
-        labels = [max(those_of(strengths)) for those_of in self._concluding]
-        aggregate = np.maximum.reduce(np.array(labels).reshape(self._shape) * self._sampled)
+        labels = rules.ravel()[self._concluding].max(axis=2, keepdims=True)
+        aggregate = np.maximum.reduce(labels * self._sampled)
 
         sums = aggregate.ravel().dot(self._moments).tolist()
         count = len(self._fallback)
@@ -148,4 +143,69 @@ class ProductInference:
                 )
             ]
         )
-        return Fired(row, column, rules, values)
+        return Fired(row, column, tuple(map(tuple, rules.tolist())), values)
+
+
+class Inference(NamedTuple):
+    """One inference of the controller, with everything that led to it.
+
+    Attributes:
+        near: Memberships of the distance in each of its labels, shape (5,) in the paper.
+        side: Memberships of the difference in each of its labels, shape (5,) in the paper.
+        rules: Firing strengths (Eq. 2), shape (5, 5) in the paper: a row for each label of the
+            distance, a column for each of the difference.
+        turn: N_a, the scale of the turn, positive to the left.
+        stride: N_s, the scale of the step.
+    """
+
+    near: tuple[float, ...]
+    side: tuple[float, ...]
+    rules: tuple[tuple[float, ...], ...]
+    turn: float
+    stride: float
+
+
+class FuzzyController:
+    """Turn and step from the distance ahead and the difference of the sides.
+
+    It has no memory: the same inputs give the same outputs.
+
+    Attributes:
+        base: The rule table, with rows of the distance, columns of the difference and the outputs
+            (turn, step).
+        samples: n of Eq. 22.
+    """
+
+    __slots__ = ("_engine", "base", "samples")
+
+    def __init__(self, base: RuleBase, *, samples: int = 101) -> None:
+        """Prepare the inference.
+
+        If no rule fires, the controller does not turn and takes the smallest step. With Gaussian
+        sets that cover their domain this never happens.
+
+        Raises:
+            ValueError: If the rules have not two outputs, or ``samples`` is below 3.
+        """
+        if len(base.outputs) != 2:
+            raise ValueError(f"{len(base.outputs)} outputs; the controller has a turn and a step")
+        self.base = base
+        self.samples = samples
+        self._engine = ProductInference(
+            base, samples=samples, fallback=(0.0, base.outputs[1].domain[0])
+        )
+
+    def infer(self, distance: float, difference: float) -> Inference:
+        """Return turn and step for one pair of inputs, each clipped to its domain first.
+
+        Args:
+            distance: d, in the unit of its table.
+            difference: Df, in the unit of its table; positive means more room on the left.
+
+        Raises:
+            ValueError: If an input is not a number.
+        """
+        near, side, rules, (turn, stride) = self._engine.infer(
+            self.base.row.clip(distance), self.base.column.clip(difference)
+        )
+        return Inference(near, side, rules, turn, stride)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Literal, TypeAlias
 
-from fuzzyq_bullet.fuzzy.controller import FuzzyController
+from fuzzyq_bullet.fuzzy.inference import FuzzyController
 from fuzzyq_bullet.fuzzy.rules import RuleBase
 from fuzzyq_bullet.fuzzy.sets import Variable
 

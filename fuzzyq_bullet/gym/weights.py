@@ -9,7 +9,7 @@ from fuzzyq_bullet.gym.sight import goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
 from fuzzyq_bullet.planning import MODES, Decision
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT
-from fuzzyq_bullet.planning.improved import Weighed
+from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import with_options
 
@@ -91,7 +91,7 @@ class WeightsEnv(EpisodeEnv):
         self._robot = scenario.robot
         settings = with_options(scenario, planner=_PLANNER).planner
         assert isinstance(settings, ImprovedFuzzySettings)
-        self._planner = Weighed(settings)
+        self._planner = ImprovedFuzzyBase(settings)
 
     def _see(self, episode: Episode) -> dict[str, float]:
         now = self._now = episode.observe()

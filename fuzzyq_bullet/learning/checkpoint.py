@@ -1,8 +1,7 @@
-"""Where a training stands after an episode: kept on disk, so that an interruption costs nothing.
+"""A training after each episode: its learning curve, and the checkpoint to resume it from.
 
-Writing one takes about half a millisecond, and an episode far longer, so one is written after every
-episode. Eligibility traces end with their episode and random streams begin with it: a table, the
-curve so far and what the training was begun with are all that there is to keep.
+Eligibility traces end with their episode and random streams begin with it, so there is little to
+keep: the table, the learning curve so far, and what the training was begun with.
 """
 
 from __future__ import annotations
@@ -29,7 +28,11 @@ Curve: TypeAlias = NDArray[np.void]
 ROW = np.dtype([("total", "<f8"), ("steps", "<i4"), ("outcome", "S16")])
 FORMAT = 1
 LARGEST = 1e9
-"""No value that was learned well is larger; whoever gets there diverges."""
+"""Greatest value of a table. A training that gets beyond it diverges."""
+WINDOW = 50
+"""Number of episodes in a running mean."""
+SUCCESS = b"goal"
+"""The outcome of a successful episode."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +40,7 @@ class Checkpoint:
     """The state of a training between two episodes.
 
     Attributes:
-        plan: What the training was begun with; only the same can resume it.
+        plan: What the training was begun with. It can only be resumed with the same.
         table: What was learned, shape (S, A).
         curve: A row for each finished episode, of the type ``ROW``.
     """
@@ -96,7 +99,7 @@ class Checkpoint:
         return cls(plan, table, curve)
 
     def check(self, path: Path, plan: Mapping[str, Plain], shape: tuple[int, ...]) -> None:
-        """Make sure that this is the training which is to be resumed.
+        """Check that this is the training to be resumed.
 
         Args:
             path: What to call it in messages.
@@ -135,3 +138,25 @@ def _is_told(curve: Curve) -> bool:
 
 def _shown(value: Any) -> str:
     return "nothing" if value is None else ascii(value).strip("'")[:60]
+
+
+def reached(curve: Curve) -> NDArray[np.bool_]:
+    """Return which episodes reached the goal, shape (N,)."""
+    return np.asarray(curve["outcome"] == SUCCESS)
+
+
+def success(curve: Curve) -> float:
+    """Return the share of episodes that reached the goal; NaN if there are no episodes."""
+    return float(reached(curve).mean()) if len(curve) else float("nan")
+
+
+def last_mean(values: NDArray[Any], window: int = WINDOW) -> Floats:
+    """Return the running mean over the last ``window`` values, shape (N,).
+
+    At the beginning, where there are fewer, it is the mean of those.
+    """
+    count = len(values)
+    sums = np.concatenate([[0.0], np.cumsum(values, dtype=float)])
+    last = np.arange(1, count + 1)
+    first = np.maximum(last - window, 0)
+    return np.asarray((sums[last] - sums[first]) / (last - first))

@@ -1,7 +1,7 @@
-"""Watkins's Q(λ) where a state is several things to a degree: Q(s, a) = Σ φ_i(s)·w_i(a).
+"""Watkins's Q(λ) with linear function approximation: Q(s, a) = Σ φ_i(s)·w_i(a) (Eqs. 18, 19).
 
 Every action has one weight for each feature, so ∂Q(s, a)/∂w(a) = φ(s): the gradient of Eqs. 18 and
-19 that a table does not have. A state that is one thing alone (φ one-hot) is a row of a table.
+19 that a table does not have. With one-hot features it is the same as a table.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 class Features:
     """φ(s): which features a state has, and to what degree.
 
-    Learning keeps its pace whatever the features are if they sum to 1 (a weighted mean of the
-    weights is then what Q is); with Σ φ² > 2/α it cannot converge.
+    They should sum to 1, so that Q is a weighted mean of the weights and the learning rate means
+    the same in every state. With Σ φ² > 2/α learning cannot converge.
 
     Attributes:
         indices: Numbers of the features that are not 0, shape (K,), none twice.

@@ -1,4 +1,4 @@
-"""Policies: what was learned, as a plain file that says how it was made.
+"""Policies: what was learned, as a plain file that says how it was made; and what may be in one.
 
 JSON with sorted keys and a line for each state. Numbers are written so that they read back as the
 very same, so the same training gives the same bytes.
@@ -7,32 +7,112 @@ very same, so the same training gives the same bytes.
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    ValidationError,
+    model_validator,
+)
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import write_text
+from fuzzyq_bullet.learning.checkpoint import LARGEST
 from fuzzyq_bullet.learning.plain_json import read_object, shown
-from fuzzyq_bullet.learning.policy_fields import (
-    Actions,
-    Name,
-    Parameters,
-    Rows,
-    States,
-    Whole,
-    Words,
-)
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.learning.expected import Expected
+    from collections.abc import Sequence
+
     from fuzzyq_bullet.learning.tabular import Floats
 
 FORMAT = 1
 MAX_BYTES = 4_000_000
-"""Largest policy file: 64 states and 25 actions take 0.03 MB, 10 000 and 8 take 1.6 MB."""
+"""Greatest size of a policy file. 64 states and 25 actions take 0.03 MB."""
+MAX_STATES = 50_000
+MAX_ACTIONS = 1_000
+MAX_PARAMETERS = 200
+MAX_NAME = 100
+MAX_WORDS = 2_000
+
+
+def _text(value: Any) -> Any:
+    # A path on a command line may hold bytes that are no text; they must not spoil the file.
+    return value.encode("utf-8", "backslashreplace").decode() if isinstance(value, str) else value
+
+
+# Checked by hand, for hostile files: pydantic would make an error of each of a million wrong items.
+def _names(value: Any, most: int) -> tuple[str, ...]:
+    if not isinstance(value, list | tuple) or not 1 <= len(value) <= most:
+        raise ValueError(f"must be a list of 1 to {most} names, got {shown(value)}")
+    seen: set[str] = set()
+    for name in value:
+        if not isinstance(name, str) or not 1 <= len(name) <= MAX_NAME:
+            raise ValueError(f"a name is text of 1 to {MAX_NAME} letters, got {shown(name)}")
+        if name in seen:
+            raise ValueError(f"every name must be another, {shown(name)} is given twice")
+        seen.add(name)
+    return tuple(_text(name) for name in value)
+
+
+def _state_names(value: Any) -> tuple[str, ...]:
+    return _names(value, MAX_STATES)
+
+
+def _action_names(value: Any) -> tuple[str, ...]:
+    return _names(value, MAX_ACTIONS)
+
+
+def _rows(value: Any) -> tuple[tuple[float, ...], ...]:
+    if not isinstance(value, list | tuple) or not 1 <= len(value) <= MAX_STATES:
+        raise ValueError(f"must be a list of 1 to {MAX_STATES} rows, got {shown(value)}")
+    for i, row in enumerate(value):
+        if not isinstance(row, list | tuple):
+            raise ValueError(f"row {i} must be a list of numbers, got {shown(row)}")
+        for number in row:
+            # Not isinstance: true is an int. Negated, so that NaN is refused.
+            if type(number) not in (float, int) or not abs(number) <= LARGEST:
+                raise ValueError(
+                    f"row {i} must hold numbers within ±{LARGEST:g}, got {shown(number)}"
+                )
+    return tuple(tuple(float(number) for number in row) for row in value)
+
+
+def _parameters(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict) or len(value) > MAX_PARAMETERS:
+        raise ValueError(f"must be an object of at most {MAX_PARAMETERS} keys, got {shown(value)}")
+    for key, item in value.items():
+        if not isinstance(key, str) or not 1 <= len(key) <= MAX_NAME:
+            raise ValueError(f"a key is text of 1 to {MAX_NAME} letters, got {shown(key)}")
+        if isinstance(item, str):
+            fits = len(item) <= MAX_WORDS
+        else:
+            fits = item is None or (type(item) in (bool, int, float) and abs(item) <= 2**63)
+        if not fits:
+            raise ValueError(
+                f"{shown(key)} must be a number, true, false, null or text of at most {MAX_WORDS} "
+                f"letters, got {shown(item)}"
+            )
+    return {_text(key): _text(item) for key, item in value.items()}
+
+
+Name: TypeAlias = Annotated[
+    str, StringConstraints(min_length=1, max_length=MAX_NAME), BeforeValidator(_text)
+]
+Words: TypeAlias = Annotated[str, StringConstraints(max_length=MAX_WORDS), BeforeValidator(_text)]
+Whole: TypeAlias = Annotated[int, Field(ge=0, lt=2**63)]
+Parameters: TypeAlias = Annotated[
+    dict[str, str | bool | int | float | None], BeforeValidator(_parameters)
+]
+States: TypeAlias = Annotated[tuple[str, ...], BeforeValidator(_state_names)]
+Actions: TypeAlias = Annotated[tuple[str, ...], BeforeValidator(_action_names)]
+Rows: TypeAlias = Annotated[tuple[tuple[float, ...], ...], BeforeValidator(_rows)]
 
 
 class Policy(BaseModel):
@@ -109,7 +189,64 @@ class Policy(BaseModel):
         write_text(Path(path), text)
 
 
-def load_policy(path: Path | str, expect: Expected | None = None) -> Policy:
+@dataclass(frozen=True, slots=True)
+class PolicySpec:
+    """What a planner requires of a policy.
+
+    Attributes:
+        planner: The planner's name.
+        learner: How the table is to be read; None if any will do.
+        states: What each row must mean.
+        actions: What each column must mean.
+    """
+
+    planner: str
+    states: Sequence[str]
+    actions: Sequence[str]
+    learner: str | None = None
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of states and of actions."""
+        return len(self.states), len(self.actions)
+
+    def check(self, policy: Policy, where: str) -> None:
+        """Check that a policy fits.
+
+        Args:
+            policy: The policy.
+            where: What to call it in the message, usually its path.
+
+        Raises:
+            UserError: If it does not; the message is one line.
+        """
+        if policy.planner != self.planner:
+            raise UserError(
+                f"{where}: is a policy of the planner {shown(policy.planner)}; "
+                f"one of {self.planner!r} is needed"
+            )
+        if self.learner is not None and policy.learner != self.learner:
+            raise UserError(
+                f"{where}: was learned by {shown(policy.learner)}; {self.planner} needs one that "
+                f"was learned by {self.learner!r}"
+            )
+        for what, given, needed in (
+            ("states", policy.states, self.states),
+            ("actions", policy.actions, self.actions),
+        ):
+            if len(given) != len(needed):
+                raise UserError(
+                    f"{where}: has {len(given)} {what}; {self.planner} has {len(needed)}"
+                )
+            for i, (one, other) in enumerate(zip(given, needed, strict=True)):
+                if one != other:
+                    raise UserError(
+                        f"{where}: {what}: number {i} is {shown(one)}; "
+                        f"that of {self.planner} is {shown(other)}"
+                    )
+
+
+def load_policy(path: Path | str, expect: PolicySpec | None = None) -> Policy:
     """Read a policy from a file.
 
     Args:

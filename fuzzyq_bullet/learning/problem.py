@@ -1,4 +1,4 @@
-"""What can be learned and what can learn it: two protocols that know nothing of each other."""
+"""The two protocols of learning: a problem, and a learner."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ StateIn = TypeVar("StateIn", contravariant=True)
 
 
 class Problem(Protocol[StateOut]):
-    """Something to be learned in episodes.
+    """A Markov decision process to be learned in episodes.
 
     Nothing may be carried from one episode into the next, and all chance must come from the
     episode's number (``training.episode_rng``): this is what lets a training be interrupted and
@@ -41,7 +41,7 @@ class Problem(Protocol[StateOut]):
 
 
 class Learner(Protocol[StateIn]):
-    """Something that learns the values of actions."""
+    """Learns the values of actions."""
 
     def begin(self, rate: float, trace_decay: float) -> None:
         """Begin an episode with the learning rate α and trace decay λ; all traces are 0."""

@@ -1,4 +1,4 @@
-"""What the paper sets for learning: Table 1, and Eqs. 20 and 21 over the episodes."""
+"""The paper's parameters of learning: Table 1, and Eqs. 20 and 21 over the episodes."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 """Learning in a table: Q-learning (Eq. 7) and Watkins's Q(λ) (Eq. 18).
 
-States are the numbers 0 … S−1, actions 0 … A−1. Plain lists: for one row at a time they are several
-times as quick as arrays.
+States are the numbers 0 … S−1, actions 0 … A−1.
 """
 
 from __future__ import annotations
@@ -17,11 +16,11 @@ Floats: TypeAlias = NDArray[np.float64]
 TraceKind: TypeAlias = Literal["accumulating", "replacing"]
 
 FAINT = 1e-9
-"""Traces no larger are forgotten: they cost time, and move a value by a billionth of an error."""
+"""Traces no larger than this are dropped: they would move a value by a billionth of an error."""
 
 
 class QLearning:
-    """Q-learning: each step mends the value of one state and action.
+    """Q-learning (Eq. 7): each step updates the value of one state and action.
 
     Attributes:
         discount: ξ of Eq. 7.
@@ -50,7 +49,7 @@ class QLearning:
             after: s', where it led to; None if the episode is over, and nothing more is earned.
 
         Returns:
-            δ, the error that was found.
+            δ, the temporal-difference error.
         """
         row = self._q[state]
         best = 0.0 if after is None else max(self._q[after])
@@ -76,7 +75,7 @@ class QLearning:
 
 
 class QLambda(QLearning):
-    """Watkins's Q(λ): what went before has a share in every error, as far as it was greedy.
+    """Watkins's Q(λ) (Eq. 18): earlier greedy steps share in every error by their traces.
 
     In a table Q(s, a) is its own parameter, so the gradient in Eq. 18 is 1 for the pair at hand and
     0 for all others: e ← γλe, then e(s, a) + 1.
@@ -111,7 +110,7 @@ class QLambda(QLearning):
         best = 0.0 if after is None else max(self._q[after])
         delta = reward + self.discount * best - row[action]
 
-        # Errors behind an action that was not the best say nothing of the best before it.
+        # Watkins: after an action that was not the best, earlier traces end.
         fade = self._fade if row[action] == max(row) else 0.0
         traces = {pair: fade * e for pair, e in self._traces.items() if fade * e > FAINT}
         here = (state, action)

@@ -1,4 +1,7 @@
-"""Learning over many episodes, in a way that can be interrupted anywhere and resumed exactly."""
+"""Training over many episodes with an ε-greedy exploration policy.
+
+It can be interrupted anywhere and resumed exactly.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +13,11 @@ import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning.checkpoint import LARGEST, ROW, Checkpoint, Curve, Plain, is_sound
-from fuzzyq_bullet.learning.choice import epsilon_greedy
 from fuzzyq_bullet.learning.schedules import EXPLORATION, LEARNING_RATE, TRACE_DECAY, Schedule
 from fuzzyq_bullet.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from fuzzyq_bullet.learning.problem import Learner, Problem, State
@@ -76,6 +78,40 @@ def episode_rng(seed: int, episode: int, stream: int) -> np.random.Generator:
         stream: 0 chooses the actions; a problem takes 1 and above.
     """
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(episode, stream)))
+
+
+def greedy(values: Sequence[float], rng: np.random.Generator | None = None) -> int:
+    """Return the number of the best action.
+
+    Args:
+        values: Q(s, ·), one value an action.
+        rng: Chooses among equals; without it the first of them is taken.
+    """
+    best = max(values)
+    if rng is None:
+        return values.index(best)
+    equals = [action for action, value in enumerate(values) if value == best]
+    return equals[int(rng.integers(len(equals)))] if len(equals) > 1 else equals[0]
+
+
+def epsilon_greedy(
+    values: Sequence[float],
+    epsilon: float,
+    rng: np.random.Generator,
+    *,
+    random_ties: bool = False,
+) -> int:
+    """Explore: return any action with the chance ``epsilon``, else the best.
+
+    Args:
+        values: Q(s, ·), one value an action.
+        epsilon: ε, the chance (0 to 1) of an action drawn from all, the best included.
+        rng: The episode's own generator.
+        random_ties: Whether equals are drawn from too; else the first of them is taken.
+    """
+    if rng.random() < epsilon:
+        return int(rng.integers(len(values)))
+    return greedy(values, rng if random_ties else None)
 
 
 def train(

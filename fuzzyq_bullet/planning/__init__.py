@@ -1,12 +1,12 @@
 """Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
 
-from fuzzyq_bullet.planning import direct, weighing
-from fuzzyq_bullet.planning.base import MODES, Decision, Mode, Motion, Observation, Planner
-from fuzzyq_bullet.planning.direct import DirectPlanner
+from fuzzyq_bullet.planning.base import Motion, Observation, Planner
+from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
-from fuzzyq_bullet.planning.improved import ImprovedFuzzyPlanner
-from fuzzyq_bullet.planning.learned import FuzzyQLambdaPlanner
+from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, FuzzyQLambdaPlanner
+from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
 from fuzzyq_bullet.planning.policies import policy_of
+from fuzzyq_bullet.planning.q_learning import POLICY_SPECS, DirectPlanner
 from fuzzyq_bullet.planning.registry import (
     DEFAULT_PLANNER,
     make_planner,
@@ -56,17 +56,15 @@ register_planner(
 register_planner(
     "q-learning",
     QLearningSettings,
-    lambda settings, rng: DirectPlanner(
-        settings, policy_of(settings, direct.EXPECTED["q-learning"])
-    ),
+    lambda settings, rng: DirectPlanner(settings, policy_of(settings, POLICY_SPECS["q-learning"])),
 )
 register_planner(
     "q-lambda",
     QLambdaSettings,
-    lambda settings, rng: DirectPlanner(settings, policy_of(settings, direct.EXPECTED["q-lambda"])),
+    lambda settings, rng: DirectPlanner(settings, policy_of(settings, POLICY_SPECS["q-lambda"])),
 )
 register_planner(
     "fuzzy-q-lambda",
     FuzzyQLambdaSettings,
-    lambda settings, rng: FuzzyQLambdaPlanner(settings, policy_of(settings, weighing.EXPECTED)),
+    lambda settings, rng: FuzzyQLambdaPlanner(settings, policy_of(settings, POLICY_SPEC)),
 )

@@ -1,21 +1,18 @@
-"""What a planner sees, what it decides, and the one method it has."""
+"""What a planner sees, and the one method it has."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, Protocol, TypeAlias, get_args
+from typing import NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzyq_bullet.planning.decision import Decision
+
 Floats: TypeAlias = NDArray[np.float64]
-Numbers: TypeAlias = Sequence[float] | Floats
-"""A few numbers, in whatever holds them: plain ones are the faster for so few."""
-Table: TypeAlias = Sequence[Sequence[float]] | Floats
-Mode: TypeAlias = Literal["routine", "breakout", "following"]
-MODES: tuple[Mode, ...] = get_args(Mode)
 
 STEP_UNIT = 0.2
 """S_p, the standard single step (m): the unit of the fuzzy controller."""
@@ -111,58 +108,6 @@ class Observation(NamedTuple):
     def slowness(self) -> float:
         """How many times as long as usual the robot is to be waited for, at least 1."""
         return 1.0 if self.motion is None else self.motion.slowness
-
-
-_NAN = float("nan")
-_NO_SETS = (_NAN,) * 5
-
-
-class Decision(NamedTuple):
-    """Where to go next, and everything a picture needs to show why.
-
-    Only ``heading``, ``step`` and ``reach`` move the robot. The rest explains the decision; a
-    planner without fuzzy sets leaves it at its blank (NaN) default.
-
-    Attributes:
-        heading: World heading of the next step (rad).
-        step: Length of the next step (m), at least 0 (Eq. 17: ω1·N_s·S_p).
-        reach: Distance known to be free along the way (m); the wheels brake so that the robot
-            could stop within it. Infinite where nothing was checked.
-        mode: The part of the planner that decided.
-        lines: World headings of the left, middle and right detection lines (rad), shape (3,).
-        lengths: Their sensed free lengths (m), shape (3,).
-        distance: d, the fuzzy controller's first input, in units of S_p.
-        difference: Df = left − right (Eq. 14), its second input, in units of S_p.
-        near: Memberships of d in VN, N, M, F, VF, shape (5,).
-        side: Memberships of Df in NB, NS, ZO, PS, PB, shape (5,).
-        rules: Firing strengths (Eq. 2), shape (5, 5): a row for each label of d, a column for Df.
-        turn: N_a, the turn scale in [−2, 2], positive to the left.
-        stride: N_s, the step scale in [0, 2].
-        weights: (ω1, ω2) of Eq. 17: of the step and of the turn.
-        breakout_at: c_f, in units of S_p: with less than this free towards the goal it breaks out.
-        guard: Free length sensed along the final heading (m), NaN where not sensed.
-        target: The temporary goal of a way out (m), NaN when there is none.
-        hopeless: True when the planner knows that it cannot go on; the episode ends as ``stuck``.
-    """
-
-    heading: float
-    step: float
-    reach: float = float("inf")
-    mode: Mode = "routine"
-    lines: Numbers = (_NAN,) * 3
-    lengths: Numbers = (_NAN,) * 3
-    distance: float = _NAN
-    difference: float = _NAN
-    near: Numbers = _NO_SETS
-    side: Numbers = _NO_SETS
-    rules: Table = (_NO_SETS,) * 5
-    turn: float = _NAN
-    stride: float = _NAN
-    weights: tuple[float, float] = (_NAN, _NAN)
-    breakout_at: float = _NAN
-    guard: float = _NAN
-    target: tuple[float, float] = (_NAN, _NAN)
-    hopeless: bool = False
 
 
 class Planner(Protocol):

@@ -1,19 +1,120 @@
-"""The planner ``fuzzy``: the traditional baseline, the fuzzy controller and nothing else."""
+"""The planner ``fuzzy``, and the routine part that it shares with the other fuzzy planners.
+
+Three detection lines are cast, the fuzzy controller judges d and Df, and Eq. 17 makes its outputs a
+step (Steps 4 to 11).
+"""
 
 from __future__ import annotations
 
-from fuzzyq_bullet.planning.base import Decision, Observation
-from fuzzyq_bullet.planning.routine import Routine
-from fuzzyq_bullet.planning.settings import FuzzySettings
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from fuzzyq_bullet.fuzzy.inference import Inference
+from fuzzyq_bullet.fuzzy.paper import paper_controller
+from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
+from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.planning.settings import FuzzySettings, RoutineSettings
+
+
+class Situation(NamedTuple):
+    """What the detection lines and the controller tell, before it is weighted.
+
+    Attributes:
+        bearing: World heading of the goal, and of the middle line (rad).
+        to_goal: Distance to the centre of the goal (m).
+        lines: World headings of the left, middle and right lines (rad), shape (3,).
+        lengths: Their free lengths (m), shape (3,).
+        distance: d, in units of S_p.
+        difference: Df, in units of S_p (Eq. 14).
+        clear: Whether the middle line is free up to the goal, or as far as the robot sees.
+        inferred: What the controller infers from d and Df.
+    """
+
+    bearing: float
+    to_goal: float
+    lines: tuple[float, float, float]
+    lengths: Sequence[float]
+    distance: float
+    difference: float
+    clear: bool
+    inferred: Inference
+
+
+class Routine:
+    """Routine path planning for one episode (Section 3, Steps 4 to 11).
+
+    The middle detection line points at the goal, the others an angle α to its left and right. The
+    length of a line is how far the robot's disc can move along it before it touches something. If
+    the middle line is free up to the goal, there is nothing to avoid: d = 5, Df = 0.
+    """
+
+    def __init__(self, settings: RoutineSettings) -> None:
+        self._settings = settings
+        self._controller = paper_controller(rules=settings.rules, samples=settings.samples)
+
+    def sense(self, observation: Observation) -> Situation:
+        """Cast the three lines (Steps 4 to 6) and ask the controller (Step 9; Eqs. 13, 14)."""
+        settings = self._settings
+        dx = observation.goal[0] - observation.position[0]
+        dy = observation.goal[1] - observation.position[1]
+        to_goal = math.hypot(dx, dy)
+        bearing = math.atan2(dy, dx)
+        alpha = settings.line_angle
+        lines = (bearing + alpha, bearing, bearing - alpha)
+        left, middle, right = lengths = observation.sense(lines)
+
+        clear = middle >= min(observation.range, to_goal)
+        if clear:
+            distance, difference = observation.range / STEP_UNIT, 0.0
+        else:
+            nearest = middle if settings.distance == "middle" else min(left, middle, right)
+            distance, difference = nearest / STEP_UNIT, (left - right) / STEP_UNIT  # Eqs. 13, 14
+        inferred = self._controller.infer(distance, difference)
+        return Situation(bearing, to_goal, lines, lengths, distance, difference, clear, inferred)
+
+    def step(
+        self,
+        situation: Situation,
+        weights: tuple[float, float],
+        breakout_at: float = math.nan,
+    ) -> Decision:
+        """Return the step that the controller proposes, weighted (Step 11; Eqs. 15 to 17).
+
+        Args:
+            situation: What was sensed.
+            weights: (ω1, ω2).
+            breakout_at: c_f in units of S_p, for the breakout and the record.
+        """
+        w1, w2 = weights
+        inferred = situation.inferred
+        return Decision(
+            heading=situation.bearing + w2 * inferred.turn * self._settings.turn_unit,
+            step=min(w1 * inferred.stride * STEP_UNIT, situation.to_goal),
+            lines=situation.lines,
+            lengths=situation.lengths,
+            distance=situation.distance,
+            difference=situation.difference,
+            near=inferred.near,
+            side=inferred.side,
+            rules=inferred.rules,
+            turn=inferred.turn,
+            stride=inferred.stride,
+            weights=weights,
+            breakout_at=breakout_at,
+        )
 
 
 class FuzzyPlanner:
-    """Takes every step that the controller proposes; no guard, no way out of a dead end."""
+    """The traditional baseline: every step that the controller proposes.
+
+    It has no safety filter and no breakout.
+    """
 
     def __init__(self, settings: FuzzySettings) -> None:
         self._routine = Routine(settings)
         self._weights = settings.weights
 
     def decide(self, observation: Observation, /) -> Decision:
-        """Return the controller's step, braking for what the middle line sees."""
+        """Return the controller's step."""
         return self._routine.step(self._routine.sense(observation), self._weights)

@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.learning import Expected, Policy, load_policy
+from fuzzyq_bullet.learning import Policy, PolicySpec, load_policy
 from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.resources import asset
 
@@ -16,7 +16,7 @@ def shipped(planner: str) -> Path:
     return asset("policies") / f"{planner}.json"
 
 
-def policy_of(settings: PolicySettings, expected: Expected) -> Policy:
+def policy_of(settings: PolicySettings, expected: PolicySpec) -> Policy:
     """Return the policy for a planner; the same one again as long as its file stays the same.
 
     Args:

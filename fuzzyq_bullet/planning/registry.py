@@ -46,6 +46,23 @@ def register_planner(
     Raises:
         ValueError: If the name is taken, or could not be part of a file's name, or the settings
             could not be built with it.
+
+    Example:
+        In a file that ``--plugin`` names (``examples/extend/planner.py`` is a whole one)::
+
+            class MySettings(PlannerSettings):
+                name: Literal["my-planner"] = "my-planner"
+                speed: float = 0.5  # a key of the scenario file: planner: {name: my-planner, ...}
+
+            class MyPlanner:
+                def __init__(self, settings: MySettings) -> None:
+                    self.step = 0.4 * settings.speed
+
+                def decide(self, observation: Observation, /) -> Decision:
+                    [free] = observation.sense([observation.heading])  # m
+                    return Decision(heading=observation.heading, step=min(self.step, free))
+
+            register_planner("my-planner", MySettings, lambda settings, rng: MyPlanner(settings))
     """
     if not _NAME.fullmatch(name):
         raise ValueError(

@@ -42,15 +42,15 @@ class RoutineSettings(PlannerSettings):
 
 
 class WeightsSettings(PlannerSettings):
-    """Weights that stay as they are."""
+    """Constant weights (Eq. 17)."""
 
     weights: tuple[Weight, Weight] = Field(
         default=(0.5, 0.5), description="(ω1, ω2) of Eq. 17: ω1 scales the step, ω2 the turn."
     )
 
 
-class WaysOutSettings(RoutineSettings):
-    """Parameters of what the improved planners have beside the routine part (Section 4)."""
+class RecoverySettings(RoutineSettings):
+    """Parameters of the breakout, the sustained avoidance (Section 4) and the safety filter."""
 
     guard: Annotated[bool, Strict()] = Field(
         default=True, description="Whether a corridor along the final heading caps the step."
@@ -68,7 +68,7 @@ class WaysOutSettings(RoutineSettings):
 
 
 class PolicySettings(PlannerSettings):
-    """Where a planner that has learned takes what it learned from."""
+    """Where a planner that has learned takes its policy from."""
 
     policy: Annotated[str, Strict(), Field(min_length=1, max_length=4096)] | None = Field(
         default=None,
@@ -82,13 +82,13 @@ class FuzzySettings(WeightsSettings, RoutineSettings):
     name: Literal["fuzzy"] = "fuzzy"
 
 
-class ImprovedFuzzySettings(WeightsSettings, WaysOutSettings):
+class ImprovedFuzzySettings(WeightsSettings, RecoverySettings):
     """The improved fuzzy planner: the controller, the guard that caps its step, and ways out."""
 
     name: Literal["improved-fuzzy"] = "improved-fuzzy"
 
 
-class FuzzyQLambdaSettings(PolicySettings, WaysOutSettings):
+class FuzzyQLambdaSettings(PolicySettings, RecoverySettings):
     """The paper's own planner: the improved one, with weights that were learned."""
 
     name: Literal["fuzzy-q-lambda"] = "fuzzy-q-lambda"

@@ -1,1 +1,1 @@
-"""Robots that learn: tasks to learn on, rewards, and the learning problem of each planner."""
+"""Training of planners: scenarios, rewards, and the learning problem of each planner."""

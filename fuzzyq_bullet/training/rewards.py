@@ -1,4 +1,4 @@
-"""What a decision earns: every part in seconds, so that a return is time lost on the way."""
+"""The reward of a decision, in seconds: r = −Δt + Δ(distance to the goal)/v_max − penalties."""
 
 from __future__ import annotations
 
@@ -9,25 +9,24 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Outcome
 
 HIT = 30.0
-"""What a contact costs (s): more than any detour to avoid it."""
+"""Penalty for a contact (s): more than any detour that avoids it."""
 GIVEN_UP = 10.0
-"""What it costs to end anywhere else than in the goal, without a contact (s)."""
+"""Penalty for an episode that ends outside the goal without a contact (s)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reward:
     """The reward of one decision, in parts.
 
-    Time and progress together are how much longer it took than a straight way at full speed would
-    have; their sum over an episode that reaches the goal is its delay, which no weighting of the
-    two could hide: progress depends on where the robot is and on nothing else, so it does not
-    change which behaviour is best.
+    Over an episode that reaches the goal, time and progress sum to minus its delay: the time
+    beyond that of driving the distance at full speed. Progress depends only on where the robot is,
+    so it does not change which behaviour is best (potential-based shaping).
 
     Attributes:
-        time: Less the time that passed (s); at most 0.
-        progress: How much nearer the goal came, over the greatest speed (s).
-        contact: Less ``HIT`` when something was touched.
-        given_up: Less ``GIVEN_UP`` when the episode ended as stuck or by its limits.
+        time: Minus the time that passed (s); at most 0.
+        progress: How much nearer the robot came to the goal, divided by its greatest speed (s).
+        contact: −``HIT`` if something was touched, else 0 (s).
+        given_up: −``GIVEN_UP`` if the episode ended as stuck or by its limits, else 0 (s).
     """
 
     time: float
@@ -43,7 +42,7 @@ class Reward:
 
         Args:
             seconds: Simulated time that it took (s).
-            nearer: How much shorter the way to the goal has become (m).
+            nearer: How much shorter the distance to the goal has become (m).
             max_speed: The robot's greatest speed (m/s).
             outcome: How the episode ended with it; None while it goes on.
         """

@@ -10,16 +10,14 @@ from typing import Any, get_args
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import writable_files
-from fuzzyq_bullet.learning.checkpoint import Checkpoint, Curve
-from fuzzyq_bullet.learning.policy import load_policy
-from fuzzyq_bullet.learning.policy_fields import MAX_WORDS
+from fuzzyq_bullet.learning.checkpoint import WINDOW, Checkpoint, Curve, success
+from fuzzyq_bullet.learning.policy import MAX_WORDS, load_policy
 from fuzzyq_bullet.learning.training import MAX_EPISODES
 from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import load_scenario, realise
 from fuzzyq_bullet.scenario.models import Drive
-from fuzzyq_bullet.training.curves import WINDOW, success
-from fuzzyq_bullet.training.order import Order
-from fuzzyq_bullet.training.recipes import RECIPES, learn, recipe_of
+from fuzzyq_bullet.training.config import TrainingConfig
+from fuzzyq_bullet.training.registry import RECIPES, learn, recipe_of
 from fuzzyq_bullet.training.tasks import MOST_SEED, Tasks
 from fuzzyq_bullet.version import __version__
 from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
@@ -106,7 +104,9 @@ class TrainingProgress:
         return update
 
 
-def order_for(planner: str, episodes: int, drive: str, seed: int, scenario: str | None) -> Order:
+def config_for(
+    planner: str, episodes: int, drive: str, seed: int, scenario: str | None
+) -> TrainingConfig:
     """Return what is asked for by the options of a command.
 
     Raises:
@@ -124,36 +124,36 @@ def order_for(planner: str, episodes: int, drive: str, seed: int, scenario: str 
     drives: tuple[Drive, ...] = get_args(Drive)
     for known_drive in drives:
         if drive == known_drive:
-            order = Order(planner, episodes, known_drive, seed, scenario)
+            config = TrainingConfig(planner, episodes, known_drive, seed, scenario)
             break
     else:
         raise UserError(f"--drive: {not_one_of('drive', drive, sorted(drives))}")
-    if len(order.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
+    if len(config.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
         raise UserError(
             f"--scenario: its path is too long for the policy to hold: {shorten(scenario)}"
         )
-    return order
+    return config
 
 
-def tasks_for(order: Order) -> Tasks:
+def tasks_for(config: TrainingConfig) -> Tasks:
     """Return what is learned on.
 
     Raises:
         UserError: If the scenario is wrong.
     """
-    recipe = recipe_of(order.planner)
-    if order.scenario is None:
-        return recipe.tasks(order.drive, order.seed)
-    asked = load_scenario(order.scenario, policies=False)
+    recipe = recipe_of(config.planner)
+    if config.scenario is None:
+        return recipe.tasks(config.drive, config.seed)
+    asked = load_scenario(config.scenario, policies=False)
     # The planner that learns takes the place of the scenario's own, of which nothing is used.
-    settings = settings_for(order.planner).model_validate({"name": order.planner})
+    settings = settings_for(config.planner).model_validate({"name": config.planner})
     asked = asked.model_copy(update={"planner": settings})
     realise(asked)  # now rather than in an episode, should its obstacles find no place
-    return recipe.tasks(order.drive, order.seed, asked)
+    return recipe.tasks(config.drive, config.seed, asked)
 
 
 def episodes_done(
-    order: Order, tasks: Tasks, files: TrainingFiles, *, resume: bool, anew: bool
+    config: TrainingConfig, tasks: Tasks, files: TrainingFiles, *, resume: bool, anew: bool
 ) -> int:
     """Return how many episodes of the training that is to go on are done already.
 
@@ -180,7 +180,7 @@ def episodes_done(
     if (
         finished
         and not (done == 0 and finished == [checkpoint])
-        and not _is_same(order, tasks, files)
+        and not _is_same(config, tasks, files)
     ):
         raise UserError(
             f"{finished[0]}: is there already, and not of this training; --anew replaces it, "
@@ -189,13 +189,13 @@ def episodes_done(
     return 0
 
 
-def _is_same(order: Order, tasks: Tasks, files: TrainingFiles) -> bool:
+def _is_same(config: TrainingConfig, tasks: Tasks, files: TrainingFiles) -> bool:
     """Return whether the policy that is there was made by the very same training."""
     try:
         policy = load_policy(files.policy)
     except UserError:
         return False
-    return (policy.command, policy.scenario) == (order.command, tasks.digest())
+    return (policy.command, policy.scenario) == (config.command, tasks.digest())
 
 
 def episodes_kept(checkpoint: Path) -> int:
@@ -208,7 +208,7 @@ def episodes_kept(checkpoint: Path) -> int:
 
 
 def learn_policy(
-    order: Order,
+    config: TrainingConfig,
     tasks: Tasks,
     files: TrainingFiles,
     on_episode: Callable[[Curve], None],
@@ -216,12 +216,12 @@ def learn_policy(
     resume: bool,
 ) -> Curve:
     """Train, write the policy, and return the learning curve."""
-    recipe = recipe_of(order.planner)
+    recipe = recipe_of(config.planner)
     policy, curve = learn(
         recipe,
         tasks,
-        recipe.setup(order.episodes, order.seed),
-        command=order.command,
+        recipe.setup(config.episodes, config.seed),
+        command=config.command,
         checkpoint=files.checkpoint,
         resume=resume,
         on_episode=on_episode,
@@ -230,21 +230,21 @@ def learn_policy(
     return curve
 
 
-def title_of(order: Order, tasks: Tasks) -> str:
+def title_of(config: TrainingConfig, tasks: Tasks) -> str:
     """Return the heading of the learning curve."""
     # A scenario's name is of plain letters; its path may hold what no font can show.
     where = "random fields" if tasks.scenario is None else tasks.scenario.name
-    return f"{order.planner}: learned on {where} ({order.drive}, seed {order.seed})"
+    return f"{config.planner}: learned on {where} ({config.drive}, seed {config.seed})"
 
 
 def summary_of(
-    order: Order, curve: Curve, progress: TrainingProgress, files: TrainingFiles
+    config: TrainingConfig, curve: Curve, progress: TrainingProgress, files: TrainingFiles
 ) -> dict[str, Any]:
     """Return what became of a training, for people and as JSON."""
     window = min(WINDOW, len(curve))
     return {
-        "planner": order.planner,
-        "command": order.command,
+        "planner": config.planner,
+        "command": config.command,
         "version": __version__,
         "episodes": len(curve),
         "episodes_before": progress.before,

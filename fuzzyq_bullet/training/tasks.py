@@ -1,4 +1,4 @@
-"""Environments to learn in, which no comparison ever uses."""
+"""The scenarios that planners are trained on. No study uses one of them."""
 
 from __future__ import annotations
 
@@ -13,16 +13,15 @@ from fuzzyq_bullet.scenario import Drive, Limits, Scenario, random_task, realise
 FIRST_SEED = 2**62
 """Scenarios with seeds from here on are for training. Sweeps stay below."""
 SEEDS_APART = 2**24
-"""Scenario seeds that every seed of a training has to itself: ``TRIES`` for each episode."""
+"""Scenario seeds that each seed of a training reserves: ``TRIES`` for every episode."""
 TRIES = 16
-"""Fields that may be drawn for one episode until one has a way."""
+"""Scenarios that may be drawn for one episode until one has a path to the goal."""
 MOST_SEED = (2**63 - FIRST_SEED) // SEEDS_APART - 1
 """Greatest seed of a training."""
-MOST_EPISODES = SEEDS_APART // TRIES
 ROOM = 0.22
-"""Radius (m) of the disc for which there must be a way: what the detection lines can see."""
+"""Radius (m) of the disc for which there must be a path: half the width of a detection line."""
 COUNTS = (25, 50, 75, 100)
-"""Obstacles of random fields, taken in turn."""
+"""Numbers of obstacles of the random scenarios, taken in turn."""
 LIMITS = Limits(time=300.0, steps=5000)
 
 
@@ -49,7 +48,7 @@ class Tasks:
     def scenario_of(self, episode: int) -> Scenario:
         """Return the scenario of an episode, counted from 1, with every obstacle in its place.
 
-        There is a way in it, unless ``TRIES`` fields in a row had none.
+        It has a path to the goal, unless ``TRIES`` scenarios in a row had none.
         """
         first = FIRST_SEED + self.seed * SEEDS_APART + episode * TRIES
         for seed in range(first, first + TRIES):
@@ -59,7 +58,7 @@ class Tasks:
         return scenario
 
     def digest(self) -> str:
-        """Return a hash of all that the scenarios depend on."""
+        """Return a hash of everything that the scenarios depend on."""
         asked = {
             "seed": self.seed,
             "counts": list(self.counts),

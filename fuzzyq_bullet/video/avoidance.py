@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning.base import MODES
+from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.video.footprints import Floats, clipped, extent, footprint
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw
 
-from fuzzyq_bullet.planning.base import MODES
+from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import reason, struck
 from fuzzyq_bullet.video.paint import DirtyRegion

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
+from fuzzyq_bullet.planning.base import STEP_UNIT
+from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.scenario.models import Cylinder
 from fuzzyq_bullet.video.timeline import NO_DECISION
 

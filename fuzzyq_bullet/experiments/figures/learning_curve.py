@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from fuzzyq_bullet.files import written_beside
-from fuzzyq_bullet.training.curves import WINDOW, last_mean, reached
+from fuzzyq_bullet.learning.checkpoint import WINDOW, last_mean, reached
 
 if TYPE_CHECKING:
     from pathlib import Path

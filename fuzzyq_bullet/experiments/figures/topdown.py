@@ -14,7 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
-from fuzzyq_bullet.planning.base import MODES
+from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle
 from fuzzyq_bullet.video.footprints import arrow, footprint
 

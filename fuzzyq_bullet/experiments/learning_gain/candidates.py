@@ -8,7 +8,7 @@ from __future__ import annotations
 from itertools import product, starmap
 
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
-from fuzzyq_bullet.planning.weighing import ACTIONS, STEPS, TURNS, Weights
+from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, STEPS, TURNS, Weights
 
 USUAL_BREAKOUT = ImprovedFuzzySettings().breakout_at
 """c_f in S_p of a planner that is told nothing else."""

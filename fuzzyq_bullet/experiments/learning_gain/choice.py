@@ -14,7 +14,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.learning_gain.candidates import label_of, words_of
 from fuzzyq_bullet.experiments.learning_gain.paired import by_planner, feasible_runs
 from fuzzyq_bullet.experiments.sweep.rows import Row
-from fuzzyq_bullet.planning.weighing import Weights
+from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,10 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.learning_gain.candidates import TRIPLES, label_of, settings_of
 from fuzzyq_bullet.experiments.sweep.jobs import MOST_RUNS, Environment, Job
 from fuzzyq_bullet.learning import Policy
+from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
-from fuzzyq_bullet.planning.weighing import Weights
 from fuzzyq_bullet.scenario import Drive, Limits
-from fuzzyq_bullet.training.recipes import recipe_of
+from fuzzyq_bullet.training.registry import recipe_of
 from fuzzyq_bullet.training.tasks import FIRST_SEED, Tasks
 
 LAYOUT = "scatter"

@@ -7,7 +7,7 @@ from typing import Any
 from fuzzyq_bullet.experiments.learning_gain.candidates import ONE, label_of, settings_of
 from fuzzyq_bullet.experiments.success.contenders import PAPER
 from fuzzyq_bullet.planning import PlannerSettings, settings_for
-from fuzzyq_bullet.planning.weighing import Weights
+from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 
 COUNT = 50
 """Obstacles of Table 5."""

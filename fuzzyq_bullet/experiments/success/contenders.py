@@ -6,13 +6,13 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fuzzyq_bullet.planning import PlannerSettings, direct, weighing
+from fuzzyq_bullet.planning import PlannerSettings, fuzzy_q_lambda, q_learning
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import PolicySettings
 
 PAPER = ("fuzzy", "improved-fuzzy", "q-learning", "q-lambda", "fuzzy-q-lambda")
 """The planners of Fig. 13 and Table 5, in the order in which they are shown."""
-_EXPECTED = {**direct.EXPECTED, "fuzzy-q-lambda": weighing.EXPECTED}
+_EXPECTED = {**q_learning.POLICY_SPECS, "fuzzy-q-lambda": fuzzy_q_lambda.POLICY_SPEC}
 
 
 def described(planners: Mapping[str, PlannerSettings]) -> dict[str, Any]:

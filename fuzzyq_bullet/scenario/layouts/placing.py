@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.occupancy import OccupancyGrid
 from fuzzyq_bullet.scenario.shapes import ROBOT_RADIUS, TOUCH, Box, Obstacle
 
 if TYPE_CHECKING:
@@ -68,13 +69,13 @@ def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
     width, depth = scenario.arena.size
     outside = 0.0 if scenario.arena.walls else _OUTSIDE
     step = max(_STEP, math.sqrt((width + 2 * outside) * (depth + 2 * outside) / _MOST_PLACES))
-    xs = np.arange(-outside, width + outside + step, step)
-    ys = np.arange(-outside, depth + outside + step, step)
-    places = np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1)
+    grid = OccupancyGrid.over((-outside, -outside), (width + outside, depth + outside), step)
+    places = grid.points()
     field = Field.of([*scenario.obstacles, *obstacles], scenario.arena)
-    clearance = field.clearance(places.reshape(-1, 2)).reshape(len(xs), len(ys))
+    clearance = field.clearance(places.reshape(-1, 2)).reshape(grid.free.shape)
     # Half a step from either of two neighbours, that much clearance is left over.
-    regions, _ = label(clearance >= ROBOT_RADIUS + step / 2)
+    grid.free[:] = clearance >= ROBOT_RADIUS + step / 2
+    regions, _ = label(grid.free)
     ends = [
         _regions_at(np.array(place.position), field, places, clearance, regions, 3 * step)
         for place in (scenario.start, scenario.goal)

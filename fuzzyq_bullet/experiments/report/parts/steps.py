@@ -14,7 +14,7 @@ from fuzzyq_bullet.experiments.report.settings import Planners
 from fuzzyq_bullet.experiments.steps.plan import roles
 from fuzzyq_bullet.experiments.steps.show import orders_in_words
 from fuzzyq_bullet.experiments.steps.table import summary_of
-from fuzzyq_bullet.planning.weighing import Weights
+from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 
 COMMAND = "fuzzyq bench steps --out {}"
 

@@ -1,24 +1,27 @@
-"""The planner ``improved-fuzzy``: the routine part, ways out of dead ends, and the guard."""
+"""The planner ``improved-fuzzy``: the routine part, the escape, and the safety filter."""
 
 from __future__ import annotations
 
-from fuzzyq_bullet.planning.base import Decision, Mode, Observation
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.escape import Escape
-from fuzzyq_bullet.planning.guard import guarded
-from fuzzyq_bullet.planning.routine import Routine, Situation
-from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings, WaysOutSettings
+from fuzzyq_bullet.planning.fuzzy import Routine, Situation
+from fuzzyq_bullet.planning.safety_filter import safety_filter
+from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings, RecoverySettings
 
 
-class Weighed:
-    """A decision in two halves, with room for weights between them.
+class ImprovedFuzzyBase:
+    """What the improved planners share: they differ only in where the weights come from.
 
-    The fuzzy controller's step, or a way out where it finds none; never longer than is free.
+    A decision is made in two halves, and the weights are chosen between them: ``sense`` (Steps 4 to
+    9), then ``act`` (Steps 7, 8 and 11), which breaks out where the routine part fails and limits
+    the step to what is free.
 
     Attributes:
         mode: The mode of the latest decision.
     """
 
-    def __init__(self, settings: WaysOutSettings) -> None:
+    def __init__(self, settings: RecoverySettings) -> None:
         self._routine = Routine(settings)
         self._escape = Escape(following=settings.following) if settings.breakout else None
         self._guard = settings.guard
@@ -26,7 +29,7 @@ class Weighed:
         self.mode: Mode = "routine"
 
     def sense(self, observation: Observation) -> Situation:
-        """Return what there is to be weighed: the first half."""
+        """Return what the detection lines and the controller tell: the first half."""
         return self._routine.sense(observation)
 
     def act(
@@ -36,11 +39,11 @@ class Weighed:
         weights: tuple[float, float],
         breakout_at: float | None = None,
     ) -> Decision:
-        """Return the decision with these weights, capped by the guard: the second half.
+        """Return the decision with these weights: the second half.
 
         Args:
-            observation: What was sensed.
-            situation: What ``sense`` made of it.
+            observation: What was observed.
+            situation: What ``sense`` returned for it.
             weights: (ω1, ω2) of Eq. 17.
             breakout_at: c_f in units of S_p, if another than that of the settings.
         """
@@ -51,16 +54,16 @@ class Weighed:
             decision = self._routine.step(situation, weights, c_f)
             decision = self._escape.decide(decision, observation)
         self.mode = decision.mode
-        return guarded(decision, observation) if self._guard else decision
+        return safety_filter(decision, observation) if self._guard else decision
 
 
-class ImprovedFuzzyPlanner(Weighed):
-    """The improved planner with weights that stay as they are."""
+class ImprovedFuzzyPlanner(ImprovedFuzzyBase):
+    """The improved planner with constant weights."""
 
     def __init__(self, settings: ImprovedFuzzySettings) -> None:
         super().__init__(settings)
         self._weights = settings.weights
 
     def decide(self, observation: Observation, /) -> Decision:
-        """Return the next step with the weights of the settings."""
+        """Return the decision with the weights of the settings."""
         return self.act(observation, self.sense(observation), self._weights)

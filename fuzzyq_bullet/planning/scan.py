@@ -1,4 +1,4 @@
-"""A look all around: what is free about a place, and where that is cut off by something."""
+"""A scan: how far the robot could move in every direction, and what would stop it."""
 
 from __future__ import annotations
 
@@ -16,48 +16,48 @@ Point: TypeAlias = tuple[float, float]
 _T = TypeVar("_T", bound=np.generic)
 
 RAYS = 120
-"""Thin rays of one look: 3° apart, 6 cm at their far ends."""
-WAYS = 120
-"""Headings whose free distance is told first: 3° apart."""
+"""Thin rays of one scan: 3° apart, 6 cm at their far ends."""
+HEADINGS = 120
+"""Headings whose free distance is computed first: 3° apart."""
 FINER = (1.0 / 3.0, 1.0 / 9.0)
-"""Where the free distance is longest or changes much, it is told for headings closer together, in
-two turns: by these parts of the first spacing."""
+"""Where the free distance is longest or changes much, headings are added closer together, in two
+turns: by these parts of the first spacing."""
 JUMP = 0.3
 """Where the free distance changes by more than this from one heading to the next (m), something
 ends, and what is behind it is hidden; where by less, one boundary goes on."""
 
 TOUCH = 0.02
-"""What is no farther away from the disc than this stops it (m)."""
+"""Whatever is no farther than this from the disc stops it (m)."""
 CLOSE = 0.005
-"""By how much what stops the disc on both sides must leave too little room to be a corner (m)."""
+"""A gap narrower than the disc by more than this is a corner (m)."""
 
-_STEP = math.tau / WAYS
+_STEP = math.tau / HEADINGS
 _RAY_HEADINGS = np.arange(RAYS) * (math.tau / RAYS)
-_WAY_HEADINGS = np.arange(WAYS) * _STEP
+_FIRST_HEADINGS = np.arange(HEADINGS) * _STEP
 _TURNS = np.exp(1j * _RAY_HEADINGS)
 """Headings as complex numbers of length 1, so that a difference of two is one product."""
-_WAY_TURNS = np.exp(-1j * _WAY_HEADINGS)[:, None]
+_FIRST_TURNS = np.exp(-1j * _FIRST_HEADINGS)[:, None]
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class Scan:
     """What was seen from one place.
 
     Attributes:
         range: How far the robot sees (m).
         headings: World headings (rad) in [0, 2π), increasing.
         lengths: Free distance (m) of the robot's disc along each.
-        gaps: Indices of the headings that lead into a gap: farther than those beside them, and not
-            into a corner, where the disc is stopped on both sides.
-        walls: Lines on which the disc's centre would be stopped (m), shape (W, 2, 2): ends, x and
-            y.
+        gaps: Indices of the headings that lead into a gap. Along them more is free than beside
+            them, and nothing stops the disc on both sides at once, as in a corner.
+        boundary: Where the disc's centre would be stopped: lines (m), shape (W, 2, 2), both ends
+            of each, x and y.
     """
 
     range: float
     headings: list[float]
     lengths: list[float]
     gaps: list[int]
-    walls: Floats
+    boundary: Floats
 
     def free(self, heading: float) -> float:
         """Return the free distance (m) along a heading: the lesser of its two neighbours."""
@@ -65,11 +65,12 @@ class View:
         return min(self.lengths[at - 1], self.lengths[at % len(self.lengths)])
 
 
-def look_around(observation: Observation) -> View:
-    """Look in all directions with thin rays, and tell how far the robot's disc could move.
+def scan_360(observation: Observation) -> Scan:
+    """Cast thin rays in all directions, and compute how far the robot's disc could move.
 
-    What a ray met stops the disc where it comes within a detection line's half width of it, or as
-    near as the nearest thing is already: what stands beside the robot does not stop it.
+    A point that a ray has hit stops the disc once it is half a detection line's width away. Nothing
+    that the robot stands beside already may stop it, so where something is nearer than that, its
+    distance counts instead of the half width.
     """
     distance = observation.look(_RAY_HEADINGS.tolist())
     met = distance < observation.range + observation.radius
@@ -85,7 +86,7 @@ def look_around(observation: Observation) -> View:
         least: Floats = travel.min(axis=1, initial=observation.range)
         return np.maximum(least, 0.0)
 
-    headings, lengths = _WAY_HEADINGS, lengths_along(_WAY_TURNS)
+    headings, lengths = _FIRST_HEADINGS, lengths_along(_FIRST_TURNS)
     for part in FINER:
         edge = np.abs(lengths - _following(lengths)) > JUMP
         worth = np.flatnonzero(_peaks(lengths) | edge | _preceding(edge))
@@ -98,21 +99,21 @@ def look_around(observation: Observation) -> View:
     following = _following(np.arange(lengths.size))
     stopped = lengths < observation.range
     joined = stopped & stopped[following] & (np.abs(lengths - lengths[following]) <= JUMP)
-    walls = np.stack([ends[joined], ends[following[joined]]], axis=1)
-    return View(
+    boundary = np.stack([ends[joined], ends[following[joined]]], axis=1)
+    return Scan(
         observation.range,
         headings.tolist(),
         lengths.tolist(),
         _gaps(hits, headings, lengths, observation.radius),
-        walls,
+        boundary,
     )
 
 
 def _gaps(hits: NDArray[Any], headings: NDArray[Any], lengths: Floats, radius: float) -> list[int]:
-    """Return the indices of those peaks at whose ends the disc is not stopped on both sides.
+    """Return the indices of the peaks at whose ends the disc is not stopped on both sides.
 
     Args:
-        hits: What the rays met, seen from the robot (m), as complex numbers.
+        hits: What the rays hit, seen from the robot (m), as complex numbers.
         headings: World headings (rad).
         lengths: Free distance (m) along each.
         radius: Radius of the disc (m).
@@ -132,14 +133,11 @@ def _peaks(lengths: Floats) -> NDArray[np.bool_]:
     return (lengths > _preceding(lengths)) & (lengths >= _following(lengths))
 
 
-# Written out: ``np.roll`` takes ten times as long for so few.
-
-
 def _following(around: NDArray[_T]) -> NDArray[_T]:
-    """Return for each of the headings around what stands for the next one."""
-    return np.concatenate([around[1:], around[:1]])
+    """Return for each heading the value of the next one."""
+    return np.roll(around, -1)
 
 
 def _preceding(around: NDArray[_T]) -> NDArray[_T]:
-    """Return for each of the headings around what stands for the one before."""
-    return np.concatenate([around[-1:], around[:-1]])
+    """Return for each heading the value of the one before."""
+    return np.roll(around, 1)

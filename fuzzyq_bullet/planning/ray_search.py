@@ -1,4 +1,4 @@
-"""Turning a ray about until it is free: what breakout and sustained avoidance both do."""
+"""Ray search: turn a ray until it is free, for the plain breakout (4.2, Fig. 6)."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from typing import NamedTuple
 from fuzzyq_bullet.planning.base import RangeSensor
 
 COARSE = math.radians(2.5)
-"""Angle between neighbouring rays of a sweep; steps of 45° find no way through a dense field."""
+"""Angle between neighbouring rays (rad). The paper's 45° find no path through a dense field."""
 FINE = 4
-"""Into how many parts the last step is divided, so that the robot goes close by what it rounds."""
+"""The last step is divided into so many parts, so that the robot passes close to the obstacle."""
 EASE = tuple(math.radians(degrees) for degrees in (10.0, 5.0, 2.0))
-"""Turns further away from what blocks, the widest that is free is taken: along the very edge of
-an obstacle the slightest error of heading leaves no way at all."""
+"""Turns further away from the obstacle (rad); the widest that is free is taken. Along its very edge
+the slightest error of the heading would leave nothing free."""
 AT_ONCE = 16
-"""Rays cast in one batch; most sweeps end within the first."""
+"""Rays cast in one batch; most searches end within the first."""
 
 
-class Found(NamedTuple):
-    """The first free direction of a sweep.
+class FreeHeading(NamedTuple):
+    """The first free heading of a search.
 
     Attributes:
         heading: World heading (rad).
         free: Free distance along it (m).
-        turned: How far the sweep turned to find it (rad), at least 0.
+        turned: How far the ray turned to find it (rad), at least 0.
         blocked: Heading and free distance of the last ray that was not free, if one was not.
     """
 
@@ -35,9 +35,9 @@ class Found(NamedTuple):
     blocked: tuple[float, float] | None
 
 
-def first_free(
+def ray_search(
     sense: RangeSensor, start: float, side: int, enough: float, limit: float = math.tau
-) -> Found | None:
+) -> FreeHeading | None:
     """Turn from ``start`` to one side until a ray is free.
 
     Args:
@@ -48,7 +48,7 @@ def first_free(
         limit: How far to turn (rad).
 
     Returns:
-        The first free direction, or None when there is none within the limit.
+        The first free heading, or None if there is none within the limit.
     """
     blocked: tuple[float, float] | None = None
     turned_blocked = 0.0
@@ -57,23 +57,23 @@ def first_free(
             blocked, turned_blocked = (start + side * turned, free), turned
             continue
         if blocked is None:
-            return Found(start + side * turned, free, turned, None)
+            return FreeHeading(start + side * turned, free, turned, None)
         finer = (turned - turned_blocked) / FINE
         for closer, length in _rays(sense, start, side, turned_blocked + finer, finer, FINE - 1):
             if length >= enough:
-                return Found(start + side * closer, length, closer, blocked)
+                return FreeHeading(start + side * closer, length, closer, blocked)
             blocked = (start + side * closer, length)
-        return Found(start + side * turned, free, turned, blocked)
+        return FreeHeading(start + side * turned, free, turned, blocked)
     return None
 
 
-def eased(sense: RangeSensor, found: Found, side: int, enough: float) -> Found:
-    """Return a way found at the edge of something turned a little further away from it.
+def eased(sense: RangeSensor, found: FreeHeading, side: int, enough: float) -> FreeHeading:
+    """Return a heading found at the edge of an obstacle, turned a little further away from it.
 
     Args:
         sense: The range sensor.
-        found: The first free direction of a sweep.
-        side: The way it turned.
+        found: The first free heading of a search.
+        side: The side it turned to: +1 left, −1 right.
         enough: What counts as free (m).
     """
     if found.blocked is None:
@@ -88,7 +88,7 @@ def eased(sense: RangeSensor, found: Found, side: int, enough: float) -> Found:
 def _rays(
     sense: RangeSensor, start: float, side: int, first: float, step: float, count: int
 ) -> Iterator[tuple[float, float]]:
-    """Yield how far the ray is turned and its free distance, casting only as many as are asked."""
+    """Yield how far the ray is turned and its free distance; cast a batch only when asked for."""
     for begin in range(0, count, AT_ONCE):
         turns = [first + k * step for k in range(begin, min(begin + AT_ONCE, count))]
         lengths = sense([start + side * turn for turn in turns])

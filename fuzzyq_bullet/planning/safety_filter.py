@@ -1,57 +1,58 @@
-"""The guard: no step is longer than what is free along the way that the robot will really take."""
+"""The safety filter: no step is longer than what is free along the path that the robot takes."""
 
 from __future__ import annotations
 
 import math
 
 from fuzzyq_bullet.geometry import wrap_angle
-from fuzzyq_bullet.planning.base import Decision, Motion, Observation
+from fuzzyq_bullet.planning.base import Motion, Observation
+from fuzzyq_bullet.planning.decision import Decision
 
 RESERVE = 0.02
-"""Free distance that is never used up (m): by so much a detection line may be too long where a
-corner stands between two of its rays."""
+"""Free distance that is never used up (m): a detection line may be so much too long, where a corner
+stands between two of its rays."""
 NARROW = math.radians(0.3)
-"""Up to this a turn is none: one corridor covers where the robot faces and where it will."""
+"""A turn up to this counts as none (rad): one corridor covers both headings."""
 SAME = math.radians(0.3)
-"""A line already cast serves for headings as near to it as this."""
+"""A line that was cast already serves for all headings as near to it as this (rad)."""
 WIDEST = math.radians(90.0)
-"""Further round than this the robot does not get before it stands."""
+"""The robot stops before it has turned further than this (rad)."""
 
 
-def guarded(decision: Decision, observation: Observation) -> Decision:
-    """Return the decision with its step, and if need be its turn, cut down to what is free.
+def safety_filter(decision: Decision, observation: Observation) -> Decision:
+    """Return the decision with its step, and its turn if necessary, limited to what is free.
 
     The paper's point robot faces the new heading at once: one corridor along it is enough.
     """
     if observation.motion is not None:
-        return _guarded_on_wheels(decision, observation, observation.motion)
+        return _filtered_on_wheels(decision, observation, observation.motion)
     [free] = observation.sense([decision.heading])
     return decision._replace(step=_usable(free, decision.step), guard=free)
 
 
-def _guarded_on_wheels(decision: Decision, observation: Observation, motion: Motion) -> Decision:
-    """Guard a robot that comes round to its new heading on an arc, and stops late.
+def _filtered_on_wheels(decision: Decision, observation: Observation, motion: Motion) -> Decision:
+    """Filter the decision for a robot that turns on an arc and needs a distance to stop.
 
-    Seen from here, every point of that arc up to a stop lies between the direction the robot faces
-    and the new heading, so a fan of corridors between the two covers it: the least of them is how
-    far the robot may be able to go. Where the fan is shorter somewhere than the robot now needs to
-    stop, it may not turn that far yet; it brakes first, and turns as it gets slower.
+    Seen from the robot, every point of the arc up to a stop lies between its heading and the new
+    one. A fan of corridors between the two covers the arc, and the shortest of them is how far the
+    robot can go for certain. Where a corridor is shorter than the robot needs to stop, it does not
+    turn that far yet: it brakes first, and turns as it becomes slower.
     """
     facing = observation.heading
     turn = wrap_angle(decision.heading - facing)
-    # What the robot still turns of itself while it reverses its turn rate.
+    # How far the robot still turns while it reverses its turn rate.
     coast = observation.turn_rate * abs(observation.turn_rate) / (2.0 * motion.turn_acceleration)
     start = max(0.0, min(coast, turn)) if turn >= 0.0 else min(0.0, max(coast, turn))
     spacing = _spacing(motion, observation.speed)
     if start == coast and NARROW < abs(turn) <= spacing:
-        # The two cover all that it comes by.
+        # The two corridors cover the whole arc.
         passed, wanted = [0.0], [turn]
     else:
         first = turn if abs(turn) <= NARROW else 0.0
         passed = [first, *_spread(0.0, coast, spacing)]
         wanted = _spread(start, turn, spacing)
-    # The very heading of the decision, not a sum that rounds: it may have been sensed already.
-    headings = [decision.heading if way == turn else facing + way for way in (*passed, *wanted)]
+    # Take the decision's own heading, not a rounded sum: it may have been sensed already.
+    headings = [decision.heading if one == turn else facing + one for one in (*passed, *wanted)]
     free = _free(decision, observation, headings)
 
     reach = min(free[: len(passed)]) - RESERVE
@@ -90,24 +91,24 @@ def _usable(free: float, step: float) -> float:
 
 
 def _spread(start: float, end: float, spacing: float) -> list[float]:
-    """Return ways (rad) from next to ``start`` up to ``end``, at most ``spacing`` apart.
+    """Return turns (rad) from next to ``start`` up to ``end``, at most ``spacing`` apart.
 
-    None where the two are so close that the corridor at ``start`` covers both. Ways further round
-    than ``WIDEST`` are left out but for the last.
+    There are none if the two are so close that the corridor at ``start`` covers both. Of those
+    wider than ``WIDEST`` only the last is returned.
     """
     if abs(end - start) <= NARROW:
         return []
     count = math.ceil(abs(end - start) / spacing)
-    ways = [start + (end - start) * k / count for k in range(1, count)]
-    return [*(way for way in ways if abs(way) <= WIDEST), end]
+    turns = [start + (end - start) * k / count for k in range(1, count)]
+    return [*(turn for turn in turns if abs(turn) <= WIDEST), end]
 
 
 def _spacing(motion: Motion, speed: float) -> float:
     """Return the widest angle (rad) between neighbouring corridors that leaves no gap.
 
-    Halfway between two corridors of radius R, a disc of radius r at the end of its way s to a stop
-    stays within them while the law of cosines puts its foremost point, s + r away, within R of
-    the end of either.
+    A disc of radius r drives a distance s, halfway between two corridors of half width R. It stays
+    within them if its foremost point, s + r away, is within R of the end of either corridor. The
+    law of cosines gives the angle.
     """
     fastest = min(motion.max_speed, max(0.0, speed) + motion.acceleration * motion.period)
     way = max(fastest * motion.period + motion.way_to_stop(fastest), motion.margin)

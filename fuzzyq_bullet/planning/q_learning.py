@@ -1,8 +1,8 @@
-"""The planners ``q-learning`` and ``q-lambda``: a heading from a table, and nothing else.
+"""The planners ``q-learning`` and ``q-lambda``: the heading is read from a table.
 
-They are the direct baselines of the paper's comparison, which only names them. What is built here:
-a state says how far each of three detection lines is free, an action is one of five headings off
-the line to the goal, and every step is as long (``docs/learning.md``).
+They are the direct baselines of the paper's comparison, which only names them. Here a state tells
+how far each of three detection lines is free, an action is one of five headings relative to the
+line to the goal, and all steps have the same length (``docs/learning.md``).
 """
 
 from __future__ import annotations
@@ -13,15 +13,16 @@ from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
 
-from fuzzyq_bullet.learning import Expected, Policy, greedy
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.learning import Policy, PolicySpec, greedy
+from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.settings import PolicySettings
 
 LINE_ANGLE = math.radians(45.0)
 """Angle of the left and right lines from the middle one (rad), as in the fuzzy planners."""
 BORDERS = (1.0 * STEP_UNIT, 2.0 * STEP_UNIT, 4.0 * STEP_UNIT)
-"""Free lengths (m) at which the next level begins; the first is a step, so that below it a step
-along the line hits something."""
+"""Free lengths (m) at which the next level begins. The first is one step: where less is free, a
+step along the line hits something."""
 LEVELS = ("blocked", "near", "middling", "free")
 LINES = ("left", "ahead", "right")
 STATE_NAMES = tuple(
@@ -30,11 +31,11 @@ STATE_NAMES = tuple(
 )
 
 STEP = STEP_UNIT
-"""Length of every step (m), but for the last one to the goal."""
+"""Length of every step (m) but the last one, to the goal."""
 
 
 class Heading(NamedTuple):
-    """What an action is.
+    """What an action does.
 
     Attributes:
         name: What it is called in policies.
@@ -54,21 +55,21 @@ ACTIONS = (
 )
 ACTION_NAMES = tuple(action.name for action in ACTIONS)
 
-EXPECTED = {
-    name: Expected(name, STATE_NAMES, ACTION_NAMES, name) for name in ("q-learning", "q-lambda")
+POLICY_SPECS = {
+    name: PolicySpec(name, STATE_NAMES, ACTION_NAMES, name) for name in ("q-learning", "q-lambda")
 }
-"""What the policies of the two planners must look like."""
+"""What the policies of the two planners look like."""
 
 
-class Sight(NamedTuple):
-    """What the detection lines say.
+class Sensed(NamedTuple):
+    """What the detection lines tell.
 
     Attributes:
         bearing: World heading of the goal, and of the middle line (rad).
         to_goal: Distance to the centre of the goal (m).
         lines: World headings of the left, middle and right lines (rad), shape (3,).
         lengths: Their free lengths (m), shape (3,).
-        state: Number of the state that this is.
+        state: Number of the state.
     """
 
     bearing: float
@@ -90,7 +91,7 @@ def state_of(lengths: Sequence[float]) -> int:
     return state
 
 
-def sense(observation: Observation) -> Sight:
+def sense(observation: Observation) -> Sensed:
     """Cast the three lines. What stands behind the goal is not in the way."""
     dx = observation.goal[0] - observation.position[0]
     dy = observation.goal[1] - observation.position[1]
@@ -99,21 +100,21 @@ def sense(observation: Observation) -> Sight:
     lines = (bearing + LINE_ANGLE, bearing, bearing - LINE_ANGLE)
     left, middle, right = lengths = observation.sense(lines)
     counted = (left, math.inf if middle >= to_goal else middle, right)
-    return Sight(bearing, to_goal, lines, lengths, state_of(counted))
+    return Sensed(bearing, to_goal, lines, lengths, state_of(counted))
 
 
-def act(sight: Sight, action: int) -> Decision:
-    """Return the step of an action; nothing guards it."""
+def act(sensed: Sensed, action: int) -> Decision:
+    """Return the step of an action. No safety filter follows."""
     return Decision(
-        heading=sight.bearing + ACTIONS[action].turn,
-        step=min(STEP, sight.to_goal),
-        lines=sight.lines,
-        lengths=sight.lengths,
+        heading=sensed.bearing + ACTIONS[action].turn,
+        step=min(STEP, sensed.to_goal),
+        lines=sensed.lines,
+        lengths=sensed.lengths,
     )
 
 
 class DirectPlanner:
-    """Takes, in every state, the heading that was worth most when it learned.
+    """Takes the heading of the greatest learned value in every state.
 
     Args:
         settings: Those of ``q-learning`` or of ``q-lambda``.
@@ -124,10 +125,10 @@ class DirectPlanner:
     """
 
     def __init__(self, settings: PolicySettings, policy: Policy) -> None:
-        EXPECTED[settings.name].check(policy, f"the policy given to {settings.name}")
+        POLICY_SPECS[settings.name].check(policy, f"the policy given to {settings.name}")
         self._best = [greedy(row) for row in policy.table]
 
     def decide(self, observation: Observation, /) -> Decision:
-        """Return a step along the heading that is worth most here."""
-        sight = sense(observation)
-        return act(sight, self._best[sight.state])
+        """Return a step along the best heading."""
+        sensed = sense(observation)
+        return act(sensed, self._best[sensed.state])

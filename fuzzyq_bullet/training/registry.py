@@ -1,4 +1,4 @@
-"""How each planner learns: its problem, its learner, its schedules. One entry a planner."""
+"""How each planner learns: its problem, its learner and its schedules, one entry a planner."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import (
-    Expected,
     Learner,
     LinearQLambda,
     Policy,
+    PolicySpec,
     Problem,
     QLambda,
     QLearning,
@@ -21,21 +21,18 @@ from fuzzyq_bullet.learning import (
     train,
 )
 from fuzzyq_bullet.learning.checkpoint import Curve
-from fuzzyq_bullet.planning.direct import ACTION_NAMES as HEADINGS
-from fuzzyq_bullet.planning.direct import EXPECTED as DIRECT
-from fuzzyq_bullet.planning.direct import STATE_NAMES as DIRECT_STATES
-from fuzzyq_bullet.planning.weighing import EXPECTED as WEIGHTS
+from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC as WEIGHTS
+from fuzzyq_bullet.planning.q_learning import POLICY_SPECS as DIRECT
 from fuzzyq_bullet.scenario import Drive, Scenario
-from fuzzyq_bullet.training.direct import DirectProblem
+from fuzzyq_bullet.training.problems import DirectProblem, WeightsProblem
 from fuzzyq_bullet.training.tasks import COUNTS, Tasks
-from fuzzyq_bullet.training.weights import WeightsProblem
 from fuzzyq_bullet.version import __version__
 
 EAGER = Schedule(0.9, 0.4)
-"""ε of ``fuzzy-q-lambda``: 0.9 − 0.4·(i/N). What is learned is the best, whatever is tried; and an
-action that chance made look bad is found out only by being tried again."""
+"""ε of ``fuzzy-q-lambda``: 0.9 − 0.4·(i/N). Q(λ) learns the values of the best actions whatever it
+tries, and an action that looked bad by chance must be tried again."""
 SPARSE = (25, 50)
-"""Its fields. In denser ones what a choice changes drowns in what a search for a way out takes."""
+"""Numbers of obstacles. With more, the time that an escape takes hides the effect of a choice."""
 
 
 @dataclass(frozen=True)
@@ -44,15 +41,15 @@ class Recipe:
 
     Attributes:
         planner: Its name.
-        expected: What its policies look like: states, actions, learner.
-        problem: Makes what is to be learned, from the tasks to learn it on.
-        learner: Makes what learns it.
-        setup: How long and how fast, from the number of episodes and the seed.
-        counts: Numbers of obstacles of the random fields to learn in.
+        spec: What its policies look like: states, actions, learner.
+        problem: Builds the learning problem from the tasks to learn it on.
+        learner: Builds the learner.
+        setup: Builds the schedules from the number of episodes and the seed.
+        counts: Numbers of obstacles of the random scenarios.
     """
 
     planner: str
-    expected: Expected
+    spec: PolicySpec
     problem: Callable[[Tasks], Problem[Any]]
     learner: Callable[[], Learner[Any]]
     setup: Callable[[int, int], Setup]
@@ -63,33 +60,56 @@ class Recipe:
         return Tasks(drive=drive, seed=seed, counts=self.counts, scenario=scenario)
 
 
-RECIPES = {
-    one.planner: one
-    for one in (
-        Recipe(
-            planner="q-learning",
-            expected=DIRECT["q-learning"],
-            problem=DirectProblem,
-            learner=lambda: QLearning(len(DIRECT_STATES), len(HEADINGS)),
-            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
-        ),
-        Recipe(
-            planner="q-lambda",
-            expected=DIRECT["q-lambda"],
-            problem=DirectProblem,
-            learner=lambda: QLambda(len(DIRECT_STATES), len(HEADINGS)),
-            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed),
-        ),
-        Recipe(
-            planner="fuzzy-q-lambda",
-            expected=WEIGHTS,
-            problem=WeightsProblem,
-            learner=lambda: LinearQLambda(len(WEIGHTS.states), len(WEIGHTS.actions)),
-            setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, exploration=EAGER),
-            counts=SPARSE,
-        ),
+RECIPES: dict[str, Recipe] = {}
+"""By planner."""
+
+
+def register_recipe(recipe: Recipe) -> None:
+    """Make known how a planner learns, so that ``fuzzyq train`` can train it.
+
+    The planner itself is registered by ``planning.register_planner``; its settings are a
+    ``PolicySettings``, so that a scenario can name the policy that was learned.
+
+    Raises:
+        ValueError: If it is known already how that planner learns.
+    """
+    if recipe.planner in RECIPES:
+        raise ValueError(f"it is known already how the planner {recipe.planner!r} learns")
+    RECIPES[recipe.planner] = recipe
+
+
+def _paper_setup(episodes: int, seed: int) -> Setup:
+    return Setup(episodes=episodes, seed=seed)
+
+
+register_recipe(
+    Recipe(
+        planner="q-learning",
+        spec=DIRECT["q-learning"],
+        problem=DirectProblem,
+        learner=lambda: QLearning(*DIRECT["q-learning"].shape),
+        setup=_paper_setup,
     )
-}
+)
+register_recipe(
+    Recipe(
+        planner="q-lambda",
+        spec=DIRECT["q-lambda"],
+        problem=DirectProblem,
+        learner=lambda: QLambda(*DIRECT["q-lambda"].shape),
+        setup=_paper_setup,
+    )
+)
+register_recipe(
+    Recipe(
+        planner="fuzzy-q-lambda",
+        spec=WEIGHTS,
+        problem=WeightsProblem,
+        learner=lambda: LinearQLambda(*WEIGHTS.shape),
+        setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, exploration=EAGER),
+        counts=SPARSE,
+    )
+)
 
 
 def recipe_of(planner: str) -> Recipe:
@@ -152,8 +172,8 @@ def learn(
         scenario=tasks.digest(),
         episodes=setup.episodes,
         parameters={key: described[key] for key in described if key not in ("seed", "episodes")},
-        states=tuple(recipe.expected.states),
-        actions=tuple(recipe.expected.actions),
+        states=tuple(recipe.spec.states),
+        actions=tuple(recipe.spec.actions),
         table=learner.table.tolist(),
     )
     return policy, curve

@@ -17,23 +17,24 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, Schedule, load_policy
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import QLambdaSettings, QLearningSettings, make_planner, planner_names
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
-from fuzzyq_bullet.planning.direct import (
+from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
+from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.planning.policies import shipped
+from fuzzyq_bullet.planning.q_learning import (
     ACTION_NAMES,
     ACTIONS,
     BORDERS,
-    EXPECTED,
+    POLICY_SPECS,
     STATE_NAMES,
     DirectPlanner,
     act,
     sense,
     state_of,
 )
-from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.scenario import Scenario, parse_scenario
-from fuzzyq_bullet.training.direct import DirectProblem
-from fuzzyq_bullet.training.practice import PATIENCE, Practice
-from fuzzyq_bullet.training.recipes import learn, recipe_of
+from fuzzyq_bullet.training.episode import PATIENCE, TrainingEpisode
+from fuzzyq_bullet.training.problems import DirectProblem
+from fuzzyq_bullet.training.registry import learn, recipe_of
 from fuzzyq_bullet.training.rewards import HIT
 from fuzzyq_bullet.training.tasks import Tasks
 
@@ -44,7 +45,7 @@ STRAIGHT = ACTION_NAMES.index("straight")
 
 def policy(planner: str, best: Sequence[int], **changed: object) -> Policy:
     """A policy made by hand: which action is best in each state."""
-    expected = EXPECTED[planner]
+    expected = POLICY_SPECS[planner]
     table = [
         [0.0 if action == one else -1.0 for action in range(len(ACTION_NAMES))] for one in best
     ]
@@ -249,7 +250,7 @@ def test_the_same_seed_gives_the_same_policy_to_the_byte(planner: str) -> None:
     first = trained(planner)
     assert np.array(first.table).any()
     assert trained(planner).dumps() == first.dumps()
-    EXPECTED[planner].check(first, "here")
+    POLICY_SPECS[planner].check(first, "here")
 
 
 def test_each_learns_with_the_discount_of_its_equation() -> None:
@@ -297,40 +298,40 @@ def test_without_a_contact_it_earns_what_any_robot_would() -> None:
 
 
 def test_practice_ends_with_a_hit_where_hits_end_it() -> None:
-    practice = Practice(Tasks(drive="kinematic", scenario=world_of("q-learning", BLOCK)))
-    practice.begin(1)
-    while not practice.over:
-        reward = practice.advance(act(sense(practice.observe()), STRAIGHT))
-    assert practice.outcome == "collision"
+    episode = TrainingEpisode(Tasks(drive="kinematic", scenario=world_of("q-learning", BLOCK)))
+    episode.begin(1)
+    while not episode.over:
+        reward = episode.advance(act(sense(episode.observe()), STRAIGHT))
+    assert episode.outcome == "collision"
     assert reward.contact == -HIT
 
 
 def test_practice_gives_up_sooner_than_a_run() -> None:
-    practice = Practice(Tasks(drive="wheels", scenario=world_of("q-learning", BLOCK)))
-    practice.begin(1)
-    while not practice.over:
-        still = practice.observe()
-        practice.advance(Decision(heading=still.heading, step=0.0))
-    assert practice.outcome == "stuck"
+    episode = TrainingEpisode(Tasks(drive="wheels", scenario=world_of("q-learning", BLOCK)))
+    episode.begin(1)
+    while not episode.over:
+        still = episode.observe()
+        episode.advance(Decision(heading=still.heading, step=0.0))
+    assert episode.outcome == "stuck"
     assert still.time < PATIENCE < STUCK_TIME < still.time + 6.0
 
 
 @pytest.mark.parametrize("drive", ["kinematic", "wheels"])
 def test_a_robot_put_back_is_where_it_decided(drive: str) -> None:
-    practice = Practice(
+    episode = TrainingEpisode(
         Tasks(
             drive="wheels" if drive == "wheels" else "kinematic",
             scenario=world_of("q-learning", BLOCK),
         ),
         hits_end=False,
     )
-    practice.begin(1)
+    episode.begin(1)
     for _ in range(60):
-        before = practice.observe()
-        reward = practice.advance(act(sense(before), STRAIGHT))
+        before = episode.observe()
+        reward = episode.advance(act(sense(before), STRAIGHT))
         if reward.contact:
             break
-    after = practice.observe()
+    after = episode.observe()
     assert reward.contact == -HIT
     assert reward.progress == pytest.approx(0.0, abs=1e-4)
     assert after.position == pytest.approx(before.position, abs=1e-4)
@@ -339,6 +340,6 @@ def test_a_robot_put_back_is_where_it_decided(drive: str) -> None:
 
 @pytest.mark.parametrize("planner", PLANNERS)
 def test_shipped_policies_are_read_as_what_they_are(planner: str) -> None:
-    found = load_policy(shipped(planner), EXPECTED[planner])
+    found = load_policy(shipped(planner), POLICY_SPECS[planner])
     assert (found.episodes, found.seed, found.drive) == (200, 0, "kinematic")
     assert f"fuzzyq train {planner} " in found.command

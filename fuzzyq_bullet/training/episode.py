@@ -1,4 +1,4 @@
-"""One episode of a training after the other: a world, what is seen in it, what a decision earns."""
+"""The episodes of a training: a world, what is observed in it, and what a decision earns."""
 
 from __future__ import annotations
 
@@ -8,32 +8,33 @@ from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.planning.base import Decision, Observation
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.scenario.models import Limits, Start
+from fuzzyq_bullet.training.distance_field import DistanceField
 from fuzzyq_bullet.training.rewards import Reward
 from fuzzyq_bullet.training.tasks import Tasks
-from fuzzyq_bullet.training.ways import Ways
 
 PATIENCE = 10.0
-"""How long the robot may stay at one place before an episode of a training is given up (s)."""
+"""How long the robot may stay at one place before the episode ends as stuck (s)."""
 
 
-class Practice:
-    """What all problems share that are learned by driving.
+class TrainingEpisode:
+    """The current episode of a training, which all problems that are learned by driving share.
 
     Args:
         tasks: Where it is learned.
         hits_end: Whether an episode is over with the first contact. If not, the robot is put back
-            to where it decided, at rest, and goes on: the contact has cost what it costs, and the
-            clock runs on.
-        true_ways: Whether progress is measured along the true shortest way, which no planner
+            to where it decided, at rest, and goes on. The contact has its cost, and time is not
+            put back.
+        true_progress: Whether progress is measured along the true shortest path, which no planner
             knows, instead of the straight line to the goal.
     """
 
-    def __init__(self, tasks: Tasks, *, hits_end: bool = True, true_ways: bool = False) -> None:
+    def __init__(self, tasks: Tasks, *, hits_end: bool = True, true_progress: bool = False) -> None:
         self._tasks = tasks
         self._hits_end = hits_end
-        self._true_ways = true_ways
+        self._true_progress = true_progress
         self._engine: Engine | None = None
 
     def begin(self, episode: int) -> None:
@@ -43,7 +44,7 @@ class Practice:
         self._scenario = scenario = self._tasks.scenario_of(episode)
         self._world = World(scenario.obstacles, scenario.arena, engine=self._engine)
         self._episode = Episode(self._world, scenario, patience=PATIENCE)
-        self._ways = Ways(scenario) if self._true_ways else None
+        self._distances = DistanceField(scenario) if self._true_progress else None
         self._left = self._to_goal(self._episode.now)
         self._decided = 0
         self._hit = False
@@ -79,9 +80,9 @@ class Practice:
         return "collision" if self._hit else self._episode.outcome or "going on"
 
     def _to_goal(self, tick: Tick) -> float:
-        """Return the way that is left (m)."""
-        if self._ways is not None:
-            return self._ways.from_here(tick.x, tick.y)
+        """Return the distance to the goal that is left (m)."""
+        if self._distances is not None:
+            return self._distances.at(tick.x, tick.y)
         return math.dist((tick.x, tick.y), self._scenario.goal.position)
 
     def _put_back(self, tick: Tick) -> None:

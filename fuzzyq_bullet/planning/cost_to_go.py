@@ -1,0 +1,91 @@
+"""The least way to the goal that the obstacles seen so far leave, through all that was not seen.
+
+It serves to choose between frontiers (Section 4.3). Its grid may close a gap narrower than a cell:
+such a frontier comes last, but it stays a candidate.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from fuzzyq_bullet.occupancy import EIGHT, OccupancyGrid
+from fuzzyq_bullet.planning.base import Floats
+from fuzzyq_bullet.planning.scan import Point
+
+CELL = 0.1
+"""Side of a cell (m); doubled until the grid has no more than ``MOST`` cells."""
+MOST = 50_000
+MARGIN = 1.0
+"""How far the grid reaches beyond everything known (m)."""
+_ALONG = np.linspace(0.0, 1.0, 9)[:, None]
+
+
+class ObstacleMap:
+    """The boundaries of all obstacles seen so far: lines that the robot's centre cannot cross."""
+
+    def __init__(self) -> None:
+        # Loading it takes long: not while the robot drives, and not when a scenario is only read.
+        import scipy.sparse.csgraph  # noqa: F401
+
+        self._ends = np.zeros((4, 0))  # rows: x and y of one end, x and y of the other
+        self._low, self._high = (math.inf, math.inf), (-math.inf, -math.inf)
+
+    def add(self, boundary: Floats) -> None:
+        """Remember what was seen.
+
+        Args:
+            boundary: Lines, shape (W, 2, 2), as in ``Scan.boundary``. None may be longer than
+                eight cells: a longer one would leak.
+        """
+        if len(boundary):
+            self._ends = np.concatenate([self._ends, boundary.reshape(-1, 4).T], axis=1)
+            corners = boundary.reshape(-1, 2)
+            self._low = _least(self._low, corners.min(axis=0).tolist())
+            self._high = _greatest(self._high, corners.max(axis=0).tolist())
+
+    def in_sight(self, start: Point, goal: Point) -> bool:
+        """Return whether the straight line between two points (m) crosses no boundary."""
+        (x, y), (gx, gy) = start, goal
+        x1, y1, x2, y2 = self._ends
+        dx, dy = gx - x, gy - y
+        side = dx * (y1 - y) - dy * (x1 - x)
+        other = dx * (y2 - y) - dy * (x2 - x)
+        wx, wy = x2 - x1, y2 - y1
+        start_side = wx * (y - y1) - wy * (x - x1)
+        goal_side = wx * (gy - y1) - wy * (gx - x1)
+        return not bool(((side * other <= 0.0) & (start_side * goal_side <= 0.0)).any())
+
+    def cost_to_go(self, goal: Point, starts: Sequence[Point]) -> list[float]:
+        """Return the length (m) of the shortest path from each start to the goal.
+
+        Infinite where the known boundaries leave none, as far as the grid can tell.
+        """
+        points = (*starts, goal)
+        grid = self._grid(_least(self._low, *points), _greatest(self._high, *points))
+        columns, rows = grid.cells(*np.array(points).T)
+        lengths = grid.distances((columns[-1], rows[-1]), EIGHT)
+        found: list[float] = lengths[columns[:-1], rows[:-1]].tolist()
+        return found
+
+    def _grid(self, low: Point, high: Point) -> OccupancyGrid:
+        """Return a grid over a rectangle (m) and ``MARGIN`` around it; boundaries are occupied."""
+        low, high = (low[0] - MARGIN, low[1] - MARGIN), (high[0] + MARGIN, high[1] + MARGIN)
+        width, depth = high[0] - low[0], high[1] - low[1]
+        cell = CELL
+        while (width / cell + 1.0) * (depth / cell + 1.0) > MOST:
+            cell *= 2.0
+        grid = OccupancyGrid.over(low, high, cell)
+        x1, y1, x2, y2 = self._ends
+        grid.free[grid.cells(x1 + (x2 - x1) * _ALONG, y1 + (y2 - y1) * _ALONG)] = False
+        return grid
+
+
+def _least(*points: Sequence[float]) -> Point:
+    return min(x for x, _ in points), min(y for _, y in points)
+
+
+def _greatest(*points: Sequence[float]) -> Point:
+    return max(x for x, _ in points), max(y for _, y in points)

@@ -1,0 +1,202 @@
+"""The exploration graph: where the robot was, and the frontiers that it has not tried yet."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
+from fuzzyq_bullet.planning.frontiers import (
+    Frontier,
+    along,
+    find_concave_corners,
+    find_frontiers,
+)
+from fuzzyq_bullet.planning.scan import Point, Scan, scan_360
+
+SPACING = 0.05
+"""Distance between two nodes that are added while the robot drives (m)."""
+NEAR = 0.15
+"""Two points no farther apart than this are one place (m)."""
+DOUBT = 0.5
+"""What a gap costs more than a frontier beyond which more is free for certain (m)."""
+ENCLOSED = 1000.0
+"""What a frontier costs more from which the known obstacles leave no path to the goal (m)."""
+_BACK = (0.0, -0.1, -0.2)
+_INTO = (0.0, 0.1, 0.2, -0.1, -0.2)
+"""Where the path on from a frontier is taken to begin, from its point on (m): the first of these
+that lies in no obstacle. A gap is entered. Elsewhere what lies before the point is known to be
+free, and so is, where the sight ended and nothing stood, what lies between the two."""
+
+
+@dataclass(slots=True)
+class Node:
+    """Where the robot was.
+
+    Attributes:
+        point: Position (m).
+        edges: Lengths (m) of the straight lines to other nodes, by their index, that were driven
+            or seen to be free.
+        scan: What was seen from here, if the robot scanned.
+    """
+
+    point: Point
+    edges: dict[int, float] = field(default_factory=dict)
+    scan: Scan | None = None
+
+    def sees(self, point: Point) -> bool:
+        """Return whether the straight line to a point (m) was seen to be free."""
+        if self.scan is None:
+            return False
+        distance = math.dist(self.point, point)
+        if distance > self.scan.range:
+            return False
+        bearing = math.atan2(point[1] - self.point[1], point[0] - self.point[0])
+        return self.scan.free(bearing) >= distance
+
+
+class ExplorationGraph:
+    """What one episode has explored."""
+
+    def __init__(self) -> None:
+        self._nodes: list[Node] = []
+        self._scanned: list[Node] = []  # those of them that have a scan
+        self._frontiers: list[Frontier] = []
+        self._obstacles = ObstacleMap()
+        self._blacklist: list[Point] = []
+        self._corners_too = False
+
+    def pass_by(self, here: Point) -> None:
+        """Add the path driven so far, up to a position (m)."""
+        if not self._nodes or math.dist(self._nodes[-1].point, here) >= SPACING:
+            self._add(here)
+
+    def scan(self, observation: Observation) -> None:
+        """Scan all around, and add what was seen: edges, obstacles and frontiers."""
+        here = observation.position
+        index = self._add(here)
+        node = self._nodes[index]
+        node.scan = scan = scan_360(observation)
+        self._scanned.append(node)
+        self._obstacles.add(scan.boundary)
+        for other, known in enumerate(self._nodes[:index]):
+            if node.sees(known.point):
+                node.edges[other] = known.edges[index] = math.dist(known.point, here)
+        self._frontiers = [one for one in self._frontiers if not _is_explored(one, node)]
+        self._remember(find_frontiers(index, here, scan))
+        if self._corners_too:
+            self._remember(find_concave_corners(index, here, scan))
+
+    def best_frontier(self, goal: Point) -> tuple[Frontier, list[Point]] | None:
+        """Return the frontier over which the path to the goal (m) may be the shortest.
+
+        Returns:
+            The frontier, and the points of the path from the latest node to it; None when every
+            frontier was tried.
+        """
+        if not self._frontiers and not self._corners_too:
+            self._corners_too = True
+            for index, node in enumerate(self._nodes):
+                if node.scan is not None:
+                    self._remember(find_concave_corners(index, node.point, node.scan))
+        if not self._frontiers:
+            return None
+        lengths, before = shortest_paths(self._nodes)
+        chosen = self._cheapest([lengths[one.node] + one.distance for one in self._frontiers], goal)
+        path, at = [chosen.point], chosen.node
+        while at >= 0:
+            path.append(self._nodes[at].point)
+            at = before[at]
+        return chosen, path[::-1]
+
+    def blacklist(self, tried: Frontier) -> None:
+        """Forget a frontier for good, and all others at the same place."""
+        self._blacklist.append(tried.point)
+        self._frontiers = [
+            one for one in self._frontiers if math.dist(one.point, tried.point) > NEAR
+        ]
+
+    def _add(self, here: Point) -> int:
+        index = len(self._nodes)
+        node = Node(here)
+        self._nodes.append(node)
+        if index:  # joined to the node before: that is how the robot got here
+            last = self._nodes[index - 1]
+            node.edges[index - 1] = last.edges[index] = math.dist(last.point, here)
+        return index
+
+    def _remember(self, frontiers: Iterable[Frontier]) -> None:
+        for found in frontiers:
+            if any(math.dist(point, found.point) <= NEAR for point in self._blacklist):
+                continue
+            if not any(_is_explored(found, node) for node in self._scanned):
+                self._frontiers.append(found)
+
+    def _cheapest(self, lengths: list[float], goal: Point) -> Frontier:
+        """Return the frontier with the shortest path to it (m, one for each) and on to the goal."""
+        costs = [
+            length + (DOUBT if one.beyond is None else 0.0) + math.dist(one.point, goal)
+            for length, one in zip(lengths, self._frontiers, strict=True)
+        ]
+        best = min(range(len(costs)), key=costs.__getitem__)
+        # No path is shorter than the straight line: the obstacles count only if they cross it.
+        if not self._obstacles.in_sight(self._frontiers[best].point, goal):
+            for k, around in enumerate(costs_to_go(self._frontiers, self._obstacles, goal)):
+                costs[k] += min(around - math.dist(self._frontiers[k].point, goal), ENCLOSED)
+            best = min(range(len(costs)), key=costs.__getitem__)
+        return self._frontiers[best]
+
+
+def costs_to_go(frontiers: Sequence[Frontier], obstacles: ObstacleMap, goal: Point) -> list[float]:
+    """Return the cost to go (m) from each frontier; infinite where there is no path."""
+    offsets = [[max(by, -one.distance) for by in _begins(one)] for one in frontiers]
+    starts = [
+        along(one.point, one.heading, by)
+        for one, some in zip(frontiers, offsets, strict=True)
+        for by in some
+    ]
+    found = iter(obstacles.cost_to_go(goal, starts))
+    costs = [[max(by, 0.0) + next(found) for by in some] for some in offsets]
+    return [next(filter(math.isfinite, some), math.inf) for some in costs]
+
+
+def shortest_paths(nodes: Sequence[Node]) -> tuple[list[float], list[int]]:
+    """Return the length (m) of the shortest path from the last node to each (Dijkstra).
+
+    Returns:
+        The lengths, infinite where there is no path, and the index of the node before each on its
+        path, −1 for the last node itself.
+    """
+    last = len(nodes) - 1
+    lengths, before = [math.inf] * (last + 1), [-1] * (last + 1)
+    lengths[last] = 0.0
+    heap = [(0.0, last)]
+    while heap:
+        length, at = heapq.heappop(heap)
+        if length > lengths[at]:
+            continue
+        for other, edge in nodes[at].edges.items():
+            if length + edge < lengths[other]:
+                lengths[other], before[other] = length + edge, at
+                heapq.heappush(heap, (length + edge, other))
+    return lengths, before
+
+
+def _begins(one: Frontier) -> tuple[float, ...]:
+    if one.beyond is None:
+        return _INTO
+    if one.ahead:
+        return (math.dist(one.point, one.beyond), *_BACK)
+    return _BACK
+
+
+def _is_explored(one: Frontier, node: Node) -> bool:
+    """Return whether a node's scan has shown what there was to see at a frontier."""
+    if node.scan is None:
+        return False
+    if math.dist(one.point, node.point) <= NEAR:
+        return True
+    return one.beyond is not None and node.sees(one.beyond)
