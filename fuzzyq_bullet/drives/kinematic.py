@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
-from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
@@ -16,8 +14,6 @@ from fuzzyq_bullet.trajectory import Collision
 STEP_TIME = longest_step_time(Robot())
 """How long every step lasts (s), whatever the robot's limits: a point that jumps has no speed, so
 no limit of it may decide how a run ends."""
-ROUNDING = 1e-9
-"""More than a clearance may be told too long by rounding (m)."""
 
 
 class KinematicDriver:
@@ -29,10 +25,8 @@ class KinematicDriver:
 
     def __init__(self, world: Sight, scenario: Scenario) -> None:
         self._world = world
-        self._field = field = world.field
+        self._field = world.field
         self._goal = scenario.goal
-        near = Nearby(field)
-        self._apart = Apart(lambda x, y: near.clearance(x, y) - ROBOT_RADIUS)
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
@@ -44,7 +38,7 @@ class KinematicDriver:
         """Return the observation of a robot without inertia."""
         now = self.ticks[-1]
         position = (now.x, now.y)
-        sensor = CastOnce(self._world, position, self._apart.by(*position, self._world.beside))
+        sensor = CastOnce(self._world, position)
         return Observation(
             time=now.time,
             position=position,
@@ -63,12 +57,9 @@ class KinematicDriver:
         """Move by one step (Eq. 17); stop at the first thing the disc would touch."""
         now = self.ticks[-1]
         step = decision.step
-        free = step
-        # What is farther away cannot stop the robot.
-        if step >= self._apart.by(now.x, now.y, step + ROUNDING) - ROUNDING:
-            [free] = self._field.free_distance(
-                (now.x, now.y), decision.heading, ROBOT_RADIUS, step
-            ).tolist()
+        [free] = self._field.free_distance(
+            (now.x, now.y), decision.heading, ROBOT_RADIUS, step
+        ).tolist()
         hit = free < step
         moved = min(step, free)
         x = now.x + moved * math.cos(decision.heading)

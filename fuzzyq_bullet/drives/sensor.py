@@ -21,13 +21,11 @@ class CastOnce:
     Args:
         world: What there is to be seen.
         origin: Centre of the robot (m).
-        apart: By how much the robot is surely apart from everything (m).
     """
 
-    def __init__(self, world: Sight, origin: tuple[float, float], apart: float = 0.0) -> None:
+    def __init__(self, world: Sight, origin: tuple[float, float]) -> None:
         self._world = world
         self._origin = origin
-        self._apart = apart
         self._known: dict[float, float] = {}
 
     def __call__(self, headings: Sequence[float]) -> list[float]:
@@ -40,7 +38,7 @@ class CastOnce:
         known = self._known
         missing = [heading for heading in dict.fromkeys(headings) if heading not in known]
         if missing:
-            told = self._world.sense(self._origin, missing, apart=self._apart)
+            told = self._world.sense(self._origin, missing)
             known.update(zip(missing, told, strict=True))
         return [known[heading] for heading in headings]
 

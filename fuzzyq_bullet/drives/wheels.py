@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 
 from fuzzyq_bullet.drives.base import Tick
-from fuzzyq_bullet.drives.foresight import Foresight
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
@@ -46,7 +45,6 @@ class WheelsDriver:
             margin=SENSOR_MARGIN,
         )
         self._pilot = Pilot(scenario.robot, TICK_TIME)
-        self._foresight = Foresight(world.field, scenario.robot)
         self._twist = STILL
         self.steps = 0
         self.collision: Collision | None = None
@@ -60,7 +58,7 @@ class WheelsDriver:
         """Return the observation at the latest tick."""
         now = self.ticks[-1]
         position = (now.x, now.y)
-        sensor = CastOnce(self._world, position, self._foresight.apart(now, TICK_STEPS))
+        sensor = CastOnce(self._world, position)
         return Observation(
             time=now.time,
             position=position,
@@ -118,19 +116,17 @@ class WheelsDriver:
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
         world, limits, now, left = self._world, self._limits, self._twist, TICK_STEPS
-        apart = self._foresight.free_steps(self.ticks[-1], TICK_STEPS)
         while left:
             stride = left
             if now != wanted:
                 stride = min(COMMAND_STEPS, left)
                 self._twist = now = ramp(now, wanted, limits, stride * TIME_STEP)
                 world.robot.command(*wheel_commands(*now))
-            taken, contact = world.advance(stride, apart=apart)
+            taken, contact = world.advance(stride)
             self.steps += taken
             if contact is not None:
                 return contact
             left -= stride
-            apart -= stride
         return None
 
     def _collision(self, contact: Contact) -> Collision:

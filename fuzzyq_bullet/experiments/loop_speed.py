@@ -82,9 +82,9 @@ def _commands(world: World, whole: Callable[[], int]) -> tuple[dict[int, tuple[f
     taken = 0
     advance, command = world.advance, world.robot.command
 
-    def counting(steps: int, *, apart: int = 0) -> tuple[int, Contact | None]:
+    def counting(steps: int) -> tuple[int, Contact | None]:
         nonlocal taken
-        done = advance(steps, apart=apart)
+        done = advance(steps)
         taken += done[0]
         return done
 

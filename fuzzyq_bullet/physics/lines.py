@@ -25,8 +25,7 @@ class LineBundle:
     The rays of one line run parallel. They start on the disc's diameter and the travel is counted
     from its front rim. The two outermost rays start outside the robot, within the margin, where
     there may be an obstacle already; a probe from the robot's side to each of these two starts
-    tells, and such a ray is left out: what stands beside the robot does not stop it. Whoever knows
-    that nothing stands there need not probe.
+    tells, and such a ray is left out: what stands beside the robot does not stop it.
 
     Args:
         radius: Radius of the robot (m).
@@ -52,7 +51,7 @@ class LineBundle:
         self._rims: list[float] = np.repeat(rims, 2).tolist()
 
     def rays(
-        self, origin: tuple[float, float], headings: Sequence[float], *, probes: bool
+        self, origin: tuple[float, float], headings: Sequence[float]
     ) -> tuple[list[Point], list[Point]]:
         """Return the start and end points (m) of all rays: for each heading 12, and 2 probes."""
         # Plain numbers, here and below: for so few of them an array costs more than it saves.
@@ -70,28 +69,25 @@ class LineBundle:
                 starts.append((x - dx, y + dy, z))
                 ends.append((x + (far_x + dx), y + (far_y - dy), z))
                 ends.append((x + (far_x - dx), y + (far_y + dy), z))
-            if probes:
-                for side in (-1, 1):
-                    for radius, points in ((self._radius, starts), (self._wide, ends)):
-                        points.append((x - side * radius * sin, y + side * radius * cos, z))
+            for side in (-1, 1):
+                for radius, points in ((self._radius, starts), (self._wide, ends)):
+                    points.append((x - side * radius * sin, y + side * radius * cos, z))
         return starts, ends
 
-    def travel(self, fractions: list[float], *, probes: bool) -> list[float]:
+    def travel(self, fractions: list[float]) -> list[float]:
         """Return the free travel (m) along each of the K headings, in [0, reach].
 
         Args:
             fractions: Where each ray ended as a part of its length (1: no hit), in the order of
                 ``rays``.
-            probes: Whether there are probes among them.
         """
         count, lengths, rims = len(self._lengths), self._lengths, self._rims
         travels = []
-        for first in range(0, len(fractions), count + 2 if probes else count):
+        for first in range(0, len(fractions), count + 2):
             ended = fractions[first : first + count]
-            if probes:
-                for ray in (-2, -1):  # the outermost; its probe comes as far after the last
-                    if fractions[first + count + 2 + ray] < 1.0:
-                        ended[ray] = 1.0
+            for ray in (-2, -1):  # the outermost; its probe comes as far after the last
+                if fractions[first + count + 2 + ray] < 1.0:
+                    ended[ray] = 1.0
             least = self._reach
             if min(ended) < 1.0:
                 # A free line is exactly as long as the range, not rounded.

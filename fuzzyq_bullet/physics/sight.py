@@ -15,7 +15,7 @@ from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.groups import Group
 from fuzzyq_bullet.physics.lines import LineBundle
 from fuzzyq_bullet.physics.robot import BODY_HEIGHT
-from fuzzyq_bullet.physics.sensing import ROUNDNESS, meshes
+from fuzzyq_bullet.physics.sensing import meshes
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena, Box, Cylinder
 
 SENSOR_RANGE = 1.0
@@ -26,11 +26,6 @@ SENSOR_MARGIN = 0.02
 _FACES = int(Group.FACES)
 _FRACTION = itemgetter(2)
 """Of what PyBullet tells of a ray: where it ended as a part of its length."""
-_BESIDE = SENSOR_MARGIN + 5.0 * ROUNDNESS
-"""How near a thing may be in a line's margin (m), where no face is long; round ones reach a little
-beyond the circle."""
-_BEYOND = 2e-4
-"""A ray also meets what lies a little beyond the ends of a face: by 1e-4 of its length."""
 _Self = TypeVar("_Self", bound="Sight")
 
 
@@ -48,8 +43,6 @@ class Sight:
         obstacles: What it was built of.
         arena: Likewise.
         field: The exact geometry of all obstacles and walls.
-        beside: What is no nearer to the robot's body than this (m) stands in no line's margin: the
-            faces that rays meet reach a little beyond what is really there.
     """
 
     def __init__(
@@ -66,29 +59,23 @@ class Sight:
         self.engine.reset()
         self._api = self.engine.api
         self._lines = LineBundle(ROBOT_RADIUS, SENSOR_MARGIN, SENSOR_RANGE, BODY_HEIGHT)
-        self.beside = _BESIDE + _BEYOND * float(self.field.boxes[:, 2:4].max(initial=0.0))
         self._build(obstacles, arena)
 
-    def sense(
-        self, origin: tuple[float, float], headings: Sequence[float], *, apart: float = 0.0
-    ) -> list[float]:
+    def sense(self, origin: tuple[float, float], headings: Sequence[float]) -> list[float]:
         """Return how far the robot's disc could move from ``origin`` along each heading.
 
         Args:
             origin: Centre of the robot (m).
             headings: World headings (rad), at least one and at most 1000.
-            apart: By how much the robot is surely apart from everything (m). It changes nothing
-                that is told: rays that could meet nothing are not cast.
 
         Returns:
             Free travel (m), one for each, in [0, ``SENSOR_RANGE``].
         """
-        probes = apart < self.beside
-        start, stop = self._lines.rays(origin, headings, probes=probes)
+        start, stop = self._lines.rays(origin, headings)
         hits = self._api.rayTestBatch(
             start, stop, collisionFilterMask=_FACES, physicsClientId=self.engine.client
         )
-        return self._lines.travel(list(map(_FRACTION, hits)), probes=probes)
+        return self._lines.travel(list(map(_FRACTION, hits)))
 
     def look(self, origin: tuple[float, float], headings: Sequence[float]) -> NDArray[np.float64]:
         """Return the distance (m) from ``origin`` to what stands there along each heading.
