@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from fuzzyq_bullet.drives import Driver
-from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.planning import MODES, Decision
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
 from fuzzyq_bullet.trajectory import Decisions, Floats, Outcome, Ticks, Trajectory
@@ -33,7 +33,7 @@ def recorded(
         decisions: Each decision with the index of the tick it was taken at.
         outcome: How the episode ended.
     """
-    ticks = _array(driver.ticks, len(driver.ticks), len(Tick._fields))
+    ticks = _array(driver.ticks, len(driver.ticks), len(RobotState._fields))
     taken = [decision for _, decision in decisions]
 
     def column(name: str, *shape: int) -> Floats:

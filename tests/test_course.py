@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet.geometry import Field, wrap_angle
-from fuzzyq_bullet.planning import Motion, Observation
+from fuzzyq_bullet.planning import Motion, Observation, RangeSensor
 from fuzzyq_bullet.planning.course import PATIENCE, Course
 
 MOTION = Motion(
@@ -37,8 +37,7 @@ def observe(field, here=(0.0, 0.0), *, heading=0.0, time=0.0, motion=MOTION):
         goal_radius=0.2,
         range=1.0,
         radius=0.22,
-        sense=sense,
-        look=sense,
+        sensor=RangeSensor(sense, sense),
         motion=motion,
     )
 

@@ -17,7 +17,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, Schedule, load_policy
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import QLambdaSettings, QLearningSettings, make_planner, planner_names
-from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.planning.base import STEP_UNIT, Decision, Observation, RangeSensor
 from fuzzyq_bullet.planning.direct import (
     ACTION_NAMES,
     ACTIONS,
@@ -128,12 +128,12 @@ def test_states_and_headings_are_mirrored_in_the_line_to_the_goal() -> None:
 
 
 def test_what_stands_behind_the_goal_is_not_in_the_way() -> None:
-    near = _facing((0.5, 0.3, 0.5))._replace(goal=(0.29, 0.0))
-    far = near._replace(goal=(0.31, 0.0))
+    near = replace(_facing((0.5, 0.3, 0.5)), goal=(0.29, 0.0))
+    far = replace(near, goal=(0.31, 0.0))
     assert STATE_NAMES[sense(near).state] == "left middling, ahead free, right middling"
     assert STATE_NAMES[sense(far).state] == "left middling, ahead near, right middling"
     assert act(sense(near), STRAIGHT).step == STEP_UNIT
-    assert act(sense(near._replace(goal=(0.0, 0.12))), STRAIGHT).step == pytest.approx(0.12)
+    assert act(sense(replace(near, goal=(0.0, 0.12))), STRAIGHT).step == pytest.approx(0.12)
 
 
 def _facing(lengths: tuple[float, float, float]) -> Observation:
@@ -149,8 +149,7 @@ def _facing(lengths: tuple[float, float, float]) -> Observation:
         goal_radius=0.2,
         range=1.0,
         radius=0.22,
-        sense=lambda headings: told,
-        look=lambda headings: told,
+        sensor=RangeSensor(lambda headings: told, lambda headings: told),
     )
 
 

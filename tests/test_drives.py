@@ -1,18 +1,15 @@
-"""What the drives share: one cast for one line, and patience with whoever is slow."""
+"""What the drives share: no robot is too slow to arrive."""
 
 from __future__ import annotations
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.episode import run
-from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import (
     Arena,
     Box,
-    Cylinder,
     Goal,
     Limits,
     Robot,
@@ -21,25 +18,6 @@ from fuzzyq_bullet.scenario import (
     random_task,
     with_options,
 )
-
-
-def test_a_line_is_cast_once_and_told_as_often_as_asked():
-    post = Cylinder(shape="cylinder", position=(3.0, 2.0), radius=0.3)
-    with Sight([post], Arena(size=(6.0, 4.0))) as world:
-        cast = []
-
-        class Watched:
-            def sense(self, origin, headings):
-                cast.extend(headings)
-                return world.sense(origin, headings)
-
-        sense = CastOnce(Watched(), (2.0, 2.0))
-        headings = [0.0, 1.0, 2.0, 0.0]
-        first = sense(headings)
-        assert first == world.sense((2.0, 2.0), headings)
-        assert sense([2.0, 0.5, 0.0]) == world.sense((2.0, 2.0), [2.0, 0.5, 0.0])
-        assert sense([]) == []
-        assert sorted(cast) == [0.0, 0.5, 1.0, 2.0]
 
 
 @given(

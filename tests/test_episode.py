@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet import metrics
-from fuzzyq_bullet.drives.pilot import Twist
+from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.episode import Episode, run, run_in
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.oracle import shortest_path
-from fuzzyq_bullet.physics.sight import Sight
+from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import (
@@ -269,7 +269,7 @@ def test_a_step_a_little_longer_than_what_is_free_ends_at_the_touch(gap):
     start = Start(position=(2.0, 2.5))
     obstacles = (cylinder(2.0 + 2.0 * ROBOT_RADIUS + gap, 2.5),)
     task = realise(scenario(drive="kinematic", start=start, obstacles=obstacles))
-    with Sight(task.obstacles, task.arena) as world:
+    with SensorWorld(task.obstacles, task.arena) as world:
         trajectory = run_in(world, task, Onward())
     assert trajectory.outcome == "collision"
     assert trajectory.ticks.position[:, 0] == pytest.approx([2.0, 2.0 + gap], abs=1e-3)
@@ -278,7 +278,7 @@ def test_a_step_a_little_longer_than_what_is_free_ends_at_the_touch(gap):
 def test_wheels_need_a_world_that_can_be_touched():
     task = realise(scenario(drive="wheels"))
     with (
-        Sight(task.obstacles, task.arena) as world,
+        SensorWorld(task.obstacles, task.arena) as world,
         pytest.raises(ValueError, match="wheels needs a world that can be touched"),
     ):
         run_in(world, task, Onward())

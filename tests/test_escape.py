@@ -7,7 +7,7 @@ import pytest
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning import MODES, Decision, ImprovedFuzzySettings, Observation
+from fuzzyq_bullet.planning import MODES, Decision, ImprovedFuzzySettings, Observation, RangeSensor
 from fuzzyq_bullet.planning.escape import Escape
 from fuzzyq_bullet.planning.sweep import first_free
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder, Goal, Limits, Scenario, Start
@@ -137,8 +137,7 @@ def blocked_ahead(position, difference):
         goal_radius=0.2,
         range=1.0,
         radius=0.22,
-        sense=sense,
-        look=lambda headings: sense(headings) + 0.2,
+        sensor=RangeSensor(sense, lambda headings: sense(headings) + 0.2),
     )
     return routine, observation
 

@@ -13,7 +13,7 @@ from scipy.sparse import csgraph
 
 from fuzzyq_bullet.geometry import Field, wrap_angle
 from fuzzyq_bullet.oracle import feasible
-from fuzzyq_bullet.planning import Decision, Observation, promise
+from fuzzyq_bullet.planning import Decision, Observation, RangeSensor, promise
 from fuzzyq_bullet.planning.course import PATIENCE as COURSE_PATIENCE
 from fuzzyq_bullet.planning.course import Course, Leg
 from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
@@ -56,8 +56,10 @@ def observe(field, here, *, goal=(100.0, 0.0), time=0.0, sense=None):
         goal_radius=0.2,
         range=RANGE,
         radius=WIDE,
-        sense=sense or (lambda headings: field.free_distance(here, headings, WIDE, RANGE)),
-        look=lambda headings: field.free_distance(here, headings, 0.0, RANGE + WIDE),
+        sensor=RangeSensor(
+            sense or (lambda headings: field.free_distance(here, headings, WIDE, RANGE)),
+            lambda headings: field.free_distance(here, headings, 0.0, RANGE + WIDE),
+        ),
     )
 
 

@@ -9,10 +9,16 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.physics.lines import SPREAD
-from fuzzyq_bullet.physics.robot import wheel_commands
-from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
+from fuzzyq_bullet.physics.robot import BODY_HEIGHT, wheel_commands
+from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.scenario import MIN_RADIUS, ROBOT_RADIUS, Arena, Box, Cylinder
+from fuzzyq_bullet.sensors import (
+    SENSOR_MARGIN,
+    SENSOR_RANGE,
+    SPREAD,
+    CorridorSensor,
+    ExactSensor,
+)
 
 FIELD = Arena(size=(6.0, 6.0))
 
@@ -29,6 +35,16 @@ def cylinder(x, y, radius=0.2):
 
 def box(x, y, length, width, yaw=0.0):
     return Box(shape="box", position=(x, y), size=(length, width), yaw=yaw)
+
+
+def sensor_of(world):
+    return CorridorSensor(
+        ExactSensor(),
+        world.cast,
+        radius=ROBOT_RADIUS,
+        height=BODY_HEIGHT,
+        rng=np.random.default_rng(0),
+    )
 
 
 def run_into(world, x, y, heading, speed=0.3, steps=2000):
@@ -120,7 +136,7 @@ def test_a_line_is_never_longer_than_the_way_to_contact(engine, obstacles, origi
         return
     world = World(obstacles, FIELD, engine=engine)
     headings = heading + np.linspace(0.0, 6.0, 12)
-    sensed = np.array(world.sense(origin, headings))
+    sensed = np.array(sensor_of(world).sense(origin, headings))
     truth = field.free_distance(origin, headings, ROBOT_RADIUS, SENSOR_RANGE)
     assert (sensed <= truth + SENSOR_MARGIN).all()
     assert (sensed >= 0.0).all()
@@ -146,7 +162,7 @@ def test_lines_agree_with_exact_geometry_on_random_worlds(engine):
             headings = rng.uniform(-math.pi, math.pi, 9)
             truth = field.free_distance(origin, headings, wide, SENSOR_RANGE)
             met = truth < SENSOR_RANGE  # a free line is right of itself and proves nothing
-            errors.append(np.abs(world.sense(tuple(origin), headings) - truth)[met])
+            errors.append(np.abs(sensor_of(world).sense(tuple(origin), headings) - truth)[met])
     errors = np.concatenate(errors)
     assert errors.size > 1000
     assert np.median(errors) <= 0.01 * SENSOR_RANGE
@@ -157,7 +173,7 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
     for shape in (lambda y: box(2.5, y, least, least), lambda y: cylinder(2.5, y, MIN_RADIUS)):
         for lateral in np.arange(-0.2, 0.2, 0.004):
             world = World([shape(3.0 + lateral)], FIELD, engine=engine)
-            [ahead] = world.sense((2.0, 3.0), [0.0])
+            [ahead] = sensor_of(world).sense((2.0, 3.0), [0.0])
             assert ahead < 0.5
     offsets = (ROBOT_RADIUS + SENSOR_MARGIN) * np.concatenate([-SPREAD[::-1], SPREAD])
     assert np.diff(offsets).max() < least
@@ -168,7 +184,7 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
 def test_what_stands_beside_the_robot_does_not_stop_it(engine, side, length):
     # 1 cm beside its way, inside the margin of the line: it may go on, the geometry says so.
     world = World([box(3.0, 3.0 + side * 0.5, length, 1.0)], FIELD, engine=engine)
-    [along] = world.sense((3.0, 3.0 - side * (ROBOT_RADIUS + 0.01)), [0.0])
+    [along] = sensor_of(world).sense((3.0, 3.0 - side * (ROBOT_RADIUS + 0.01)), [0.0])
     assert along == SENSOR_RANGE
 
 
@@ -180,10 +196,10 @@ def test_a_ray_meets_a_face_up_to_its_very_ends(engine):
         for aside in (1e-6, 1e-3, 0.5, 1.0 - 1e-3, 1.0 - 1e-6):
             along = 2.5 + aside
             start = (along, y + math.copysign(0.5, y - 3.0))
-            [down] = world.look(start, [math.copysign(math.pi / 2, 3.0 - y)])
+            [down] = sensor_of(world).look(start, [math.copysign(math.pi / 2, 3.0 - y)])
             assert down == pytest.approx(0.5, abs=1e-6)
             start = (x + math.copysign(0.5, x - 3.0), along)
-            [across] = world.look(start, [math.pi if x > 3.0 else 0.0])
+            [across] = sensor_of(world).look(start, [math.pi if x > 3.0 else 0.0])
             assert across == pytest.approx(0.5, abs=1e-6)
 
 
@@ -192,7 +208,7 @@ def test_ten_thousand_obstacles_are_all_sensed(engine):
     world = World(grid, Arena(size=(121.0, 121.0)), engine=engine)
     for index in (0, 99, 4321, 9999):
         x, y = grid[index].position
-        [ahead] = world.sense((x - 0.9, y), [0.0])
+        [ahead] = sensor_of(world).sense((x - 0.9, y), [0.0])
         assert ahead == pytest.approx(0.9 - 0.2 - ROBOT_RADIUS - SENSOR_MARGIN, abs=0.01)
 
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
-from fuzzyq_bullet.physics.groups import Group
+from fuzzyq_bullet.physics.engine import Contact
+from fuzzyq_bullet.physics.obstacle_urdf import obstacles_urdf, walls_urdf
 from fuzzyq_bullet.physics.robot import Robot
-from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
-from fuzzyq_bullet.physics.static import obstacles_urdf, walls_urdf
+from fuzzyq_bullet.physics.sensor_world import Group, SensorWorld
 from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
 
 
-class World(Sight):
+class World(SensorWorld):
     """One world with one robot. Close it, or use it as a context manager.
 
     Args:
@@ -67,6 +66,3 @@ class World(Sight):
         ground: int = self._api.createMultiBody(0.0, plane, physicsClientId=client)
         self._api.changeDynamics(ground, -1, lateralFriction=1.0, physicsClientId=client)
         return ground
-
-
-__all__ = ["SENSOR_MARGIN", "SENSOR_RANGE", "TIME_STEP", "Group", "World"]

@@ -1,7 +1,15 @@
 """Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
 
 from fuzzyq_bullet.planning import direct, weighing
-from fuzzyq_bullet.planning.base import MODES, Decision, Mode, Motion, Observation, Planner
+from fuzzyq_bullet.planning.base import (
+    MODES,
+    Decision,
+    Mode,
+    Motion,
+    Observation,
+    Planner,
+    RangeSensor,
+)
 from fuzzyq_bullet.planning.direct import DirectPlanner
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.improved import ImprovedFuzzyPlanner
@@ -42,6 +50,7 @@ __all__ = [
     "PlannerSettings",
     "QLambdaSettings",
     "QLearningSettings",
+    "RangeSensor",
     "RoutineSettings",
     "make_planner",
     "planner_names",

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from fuzzyq_bullet.planning.base import RangeSensor
+from fuzzyq_bullet.planning.base import Sense
 
 COARSE = math.radians(2.5)
 """Angle between neighbouring rays of a sweep; steps of 45° find no way through a dense field."""
@@ -36,7 +36,7 @@ class Found(NamedTuple):
 
 
 def first_free(
-    sense: RangeSensor, start: float, side: int, enough: float, limit: float = math.tau
+    sense: Sense, start: float, side: int, enough: float, limit: float = math.tau
 ) -> Found | None:
     """Turn from ``start`` to one side until a ray is free.
 
@@ -67,7 +67,7 @@ def first_free(
     return None
 
 
-def eased(sense: RangeSensor, found: Found, side: int, enough: float) -> Found:
+def eased(sense: Sense, found: Found, side: int, enough: float) -> Found:
     """Return a way found at the edge of something turned a little further away from it.
 
     Args:
@@ -86,7 +86,7 @@ def eased(sense: RangeSensor, found: Found, side: int, enough: float) -> Found:
 
 
 def _rays(
-    sense: RangeSensor, start: float, side: int, first: float, step: float, count: int
+    sense: Sense, start: float, side: int, first: float, step: float, count: int
 ) -> Iterator[tuple[float, float]]:
     """Yield how far the ray is turned and its free distance, casting only as many as are asked."""
     for begin in range(0, count, AT_ONCE):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.physics.camera import Lens, Mesh
-from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
+from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.outline import clipped, corners_for, extent, footprint
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.physics.camera import Lens
-from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT
+from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory

@@ -1,35 +1,41 @@
-"""What the robot can see of a world: rays against the faces of obstacles and walls."""
+"""A world to be seen: the faces of obstacles and walls, and the rays that meet them."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from enum import IntFlag
 from operator import itemgetter
-from typing import TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TypeAlias, TypeVar
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.physics.groups import Group
-from fuzzyq_bullet.physics.lines import LineBundle
+from fuzzyq_bullet.physics.ray_mesh import meshes
 from fuzzyq_bullet.physics.robot import BODY_HEIGHT
-from fuzzyq_bullet.physics.sensing import meshes
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena, Box, Cylinder
+from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
 
-SENSOR_RANGE = 1.0
-"""Longest distance a detection line tells (m): 5·S_p."""
-SENSOR_MARGIN = 0.02
-"""How much wider than the robot a detection line is, on either side (m)."""
+Point: TypeAlias = tuple[float, float, float]
 
-_FACES = int(Group.FACES)
 _FRACTION = itemgetter(2)
 """Of what PyBullet tells of a ray: where it ended as a part of its length."""
-_Self = TypeVar("_Self", bound="Sight")
+_Self = TypeVar("_Self", bound="SensorWorld")
 
 
-class Sight:
+class Group(IntFlag):
+    """Collision groups: what a body belongs to, and in masks what it meets."""
+
+    RAYS = 1  # PyBullet's own: every ray belongs to it and hits only what admits it
+    WHEELS = 2
+    BODY = 4
+    OBSTACLES = 8
+    WALLS = 16
+    GROUND = 32
+    FACES = 64
+
+
+_FACES = int(Group.FACES)
+
+
+class SensorWorld:
     """A world to look at and not to touch: all that the kinematic drive needs.
 
     Close it, or use it as a context manager.
@@ -58,47 +64,22 @@ class Sight:
         self.engine = engine or Engine()
         self.engine.reset()
         self._api = self.engine.api
-        self._lines = LineBundle(ROBOT_RADIUS, SENSOR_MARGIN, SENSOR_RANGE, BODY_HEIGHT)
         self._build(obstacles, arena)
 
-    def sense(self, origin: tuple[float, float], headings: Sequence[float]) -> list[float]:
-        """Return how far the robot's disc could move from ``origin`` along each heading.
+    def cast(self, starts: Sequence[Point], ends: Sequence[Point]) -> list[float]:
+        """Cast rays against the faces of everything; they must be level, at ``BODY_HEIGHT``.
 
         Args:
-            origin: Centre of the robot (m).
-            headings: World headings (rad), at least one and at most 1000.
+            starts: Where they start (m).
+            ends: Where they end at the latest (m), as many, at most 16384.
 
         Returns:
-            Free travel (m), one for each, in [0, ``SENSOR_RANGE``].
+            The part of each ray that is free, in [0, 1]; 1 where it meets nothing.
         """
-        start, stop = self._lines.rays(origin, headings)
         hits = self._api.rayTestBatch(
-            start, stop, collisionFilterMask=_FACES, physicsClientId=self.engine.client
+            starts, ends, collisionFilterMask=_FACES, physicsClientId=self.engine.client
         )
-        return self._lines.travel(list(map(_FRACTION, hits)))
-
-    def look(self, origin: tuple[float, float], headings: Sequence[float]) -> NDArray[np.float64]:
-        """Return the distance (m) from ``origin`` to what stands there along each heading.
-
-        Args:
-            origin: Centre of the robot (m).
-            headings: World headings (rad), at least one and at most 1000.
-
-        Returns:
-            Shape (K,), each in [0, ``SENSOR_RANGE + ROBOT_RADIUS + SENSOR_MARGIN``].
-        """
-        reach = SENSOR_RANGE + ROBOT_RADIUS + SENSOR_MARGIN
-        x, y = origin
-        stop = [
-            (x + reach * math.cos(one), y + reach * math.sin(one), BODY_HEIGHT) for one in headings
-        ]
-        hits = self._api.rayTestBatch(
-            [(x, y, BODY_HEIGHT)] * len(stop),
-            stop,
-            collisionFilterMask=_FACES,
-            physicsClientId=self.engine.client,
-        )
-        return reach * np.array(list(map(_FRACTION, hits)))
+        return list(map(_FRACTION, hits))
 
     def close(self) -> None:
         """Free the engine if it was made here."""
