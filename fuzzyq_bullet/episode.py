@@ -84,23 +84,29 @@ class Episode:
         scenario: A realised scenario.
         patience: How long the robot may stay at one place before it counts as stuck (s); a slow
             robot may stay longer.
+        rate: Decisions a second on wheels, which must divide 240; one every 0.3 s if None.
 
     Raises:
-        ValueError: If the world was built of other obstacles or another arena, or there is nothing
-            in it for wheels to drive on.
+        ValueError: If the world was built of other obstacles or another arena, there is nothing
+            in it for wheels to drive on, or the rate is not allowed.
 
     Attributes:
         outcome: How it ended; None while it goes on.
     """
 
     def __init__(
-        self, world: SensorWorld, scenario: Scenario, *, patience: float = STUCK_TIME
+        self,
+        world: SensorWorld,
+        scenario: Scenario,
+        *,
+        patience: float = STUCK_TIME,
+        rate: int | None = None,
     ) -> None:
         if (world.obstacles, world.arena) != (scenario.obstacles, scenario.arena):
             raise ValueError(f"the world was not built for the scenario {scenario.name}")
         self._scenario = scenario
         self._field = world.field
-        self._driver = _driver(world, scenario)
+        self._driver = _driver(world, scenario, rate)
         self._decisions: list[tuple[int, Decision]] = []
         self._standstill = _Standstill(self.now, patience * self._driver.slowness)
         self.outcome: Outcome | None = None
@@ -180,12 +186,12 @@ class Episode:
         self.outcome = _outcome(self._driver, decision, count, limits, self._standstill)
 
 
-def _driver(world: SensorWorld, scenario: Scenario) -> Driver:
+def _driver(world: SensorWorld, scenario: Scenario, rate: int | None) -> Driver:
     if scenario.drive == "kinematic":
         return KinematicDriver(world, scenario)
     if not isinstance(world, World):
         raise ValueError(f"the drive {scenario.drive} needs a world that can be touched")
-    return WheelsDriver(world, scenario)
+    return WheelsDriver(world, scenario, rate)
 
 
 class _Standstill:

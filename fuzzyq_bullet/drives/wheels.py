@@ -25,7 +25,6 @@ COMMAND_STEPS = 3
 limit never asks the tyres for a jump they cannot hold."""
 TICK_STEPS = 36
 """Physics steps between two ticks: one every 0.15 s."""
-TICK_TIME = TICK_STEPS * TIME_STEP
 DECISION_TICKS = 2
 """Ticks between two decisions: one every 0.3 s."""
 
@@ -34,23 +33,39 @@ RESTING_TURN_RATE = 0.05
 
 
 class WheelsDriver(Driver):
-    """Drives a world's robot by its wheels, watching for contact after every physics step."""
+    """Drives a world's robot by its wheels, watching for contact after every physics step.
 
-    def __init__(self, world: World, scenario: Scenario) -> None:
+    Args:
+        world: The world of the scenario.
+        scenario: A realised scenario.
+        rate: Decisions a second; None for one every 0.3 s.
+
+    Raises:
+        ValueError: If the rate does not divide 240, or is above 80.
+    """
+
+    def __init__(self, world: World, scenario: Scenario, rate: int | None = None) -> None:
+        self._tick_steps, self._decision_ticks = TICK_STEPS, DECISION_TICKS
+        if rate is not None:  # a tick for every decision
+            self._tick_steps, left_over = divmod(round(1.0 / TIME_STEP), rate)
+            self._decision_ticks = 1
+            if left_over or self._tick_steps < COMMAND_STEPS:
+                raise ValueError(f"{rate} decisions a second are no whole number of physics steps")
+        tick_time = self._tick_steps * TIME_STEP
         limits = scenario.robot
         motion = Motion(
             max_speed=limits.max_speed,
             max_turn_rate=limits.max_turn_rate,
             acceleration=limits.acceleration,
             turn_acceleration=limits.turn_acceleration,
-            period=DECISION_TICKS * TICK_TIME,
+            period=self._decision_ticks * tick_time,
             radius=ROBOT_RADIUS,
             margin=SENSOR_MARGIN,
         )
         super().__init__(world, scenario, motion)
         self._world = world
         self._limits = limits
-        self._controller = VelocityController(limits, TICK_TIME)
+        self._controller = VelocityController(limits, tick_time)
         self._twist = STILL
         world.robot.place(*scenario.start.position, scenario.start_heading())
         self._record()
@@ -80,7 +95,7 @@ class WheelsDriver(Driver):
                 decision (m).
         """
         travelled = 0.0
-        for _ in range(DECISION_TICKS):
+        for _ in range(self._decision_ticks):
             before = self.ticks[-1]
             wanted = STILL if self._in_goal(before) else twist_at(before.heading, travelled)
             contact = self._drive(wanted)
@@ -96,7 +111,7 @@ class WheelsDriver(Driver):
 
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
-        world, limits, now, left = self._world, self._limits, self._twist, TICK_STEPS
+        world, limits, now, left = self._world, self._limits, self._twist, self._tick_steps
         while left:
             stride = left
             if now != wanted:
