@@ -420,3 +420,16 @@ def test_among_too_many_obstacles_nobody_waits_for_the_shortest_path(item, each,
         result = result_of(replace(trajectory, scenario=task))
         assert (result.shortest_path_m, result.spl) == (None, None)
     assert len(asked) == 1
+
+
+def test_decisions_may_come_more_often():
+    task = realise(scenario(obstacles=(cylinder(2.5, 2.6),), limits=Limits(time=3.0)))
+    with World(task.obstacles, task.arena) as world:
+        episode = Episode(world, task, rate=20)
+        while episode.outcome is None:
+            episode.advance(make().decide(episode.observe()))
+        taken = episode.record()
+        assert np.diff(taken.ticks.time[taken.decisions.tick]) == pytest.approx(0.05)
+        for rate in (7, 120):
+            with pytest.raises(ValueError, match="no whole number of physics steps"):
+                Episode(world, task, rate=rate)
