@@ -153,8 +153,8 @@ def _check(headings: Sequence[float]) -> None:
 class Observation:
     """All a planner may know at one instant. It cannot see the map.
 
-    Observations can be compared, and stored by ``pickle``; two are equal if all but their sensors
-    is. ``dataclasses.replace`` returns one with other values.
+    Observations can be stored by ``pickle`` and compared: two are equal if everything but their
+    sensors is equal. ``dataclasses.replace`` returns one with other values.
 
     Attributes:
         time: Time since the start (s).

@@ -74,9 +74,13 @@ class CorridorSensor:
         self._lengths = np.append(np.repeat(rims + SENSOR_RANGE, 2), [SENSOR_MARGIN] * 2)
         # Of each ray of a line, the two probes last: how far to the right it starts and ends, and
         # how far ahead it ends.
-        ends = [(a, a, ahead) for a, ahead in zip(aside.tolist(), self._lengths[::2], strict=False)]
-        both = [(side * a, side * b, float(c)) for a, b, c in ends for side in (1, -1)]
-        self._rays = [*both, (radius, wide, 0.0), (-radius, -wide, 0.0)]
+        both = np.outer(aside, [1.0, -1.0]).ravel().tolist()
+        ahead = self._lengths[:-2].tolist()
+        self._rays = [
+            *zip(both, both, ahead, strict=True),
+            (radius, wide, 0.0),
+            (-radius, -wide, 0.0),
+        ]
 
     def at(self, origin: Point) -> RangeSensor:
         """Return what can be asked when the robot's centre is at a point (m)."""
