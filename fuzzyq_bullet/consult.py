@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from fuzzyq_bullet.errors import PlannerError, Stopped, UserError
+from fuzzyq_bullet.errors import PlannerError, SensorError, Stopped, UserError
 from fuzzyq_bullet.planning import Observation, Planner, PlannerSettings, make_planner
 from fuzzyq_bullet.planning.decision import DecisionError
 from fuzzyq_bullet.wording import error_in_words
@@ -81,7 +81,7 @@ def _blamed(name: str, when: str) -> Iterator[None]:
     """
     try:
         yield
-    except PlannerError:
+    except (PlannerError, SensorError):
         raise
     except UserError as error:
         raise type(error)(*(f"planner {name}: {problem}" for problem in error.problems)) from error

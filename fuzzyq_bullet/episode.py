@@ -10,9 +10,9 @@ import numpy as np
 
 from fuzzyq_bullet.consult import ask, build_planner, refusal
 from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
-from fuzzyq_bullet.drives.base import Tick
-from fuzzyq_bullet.drives.pilot import Twist
-from fuzzyq_bullet.physics.sight import Sight
+from fuzzyq_bullet.drives.velocity_controller import Twist
+from fuzzyq_bullet.physics.robot import RobotState
+from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner
 from fuzzyq_bullet.planning.decision import DecisionError, checked
@@ -46,13 +46,13 @@ def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
     # The first stream of the seed places the obstacles; the planner has the second to itself.
     rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(1,)))
     planner = build_planner(scenario.planner, rng)
-    build = World if scenario.drive == "wheels" else Sight
+    build = World if scenario.drive == "wheels" else SensorWorld
     with build(scenario.obstacles, scenario.arena) as world:
         return run_in(world, scenario, planner, progress=progress)
 
 
 def run_in(
-    world: Sight, scenario: Scenario, planner: Planner, *, progress: Progress | None = None
+    world: SensorWorld, scenario: Scenario, planner: Planner, *, progress: Progress | None = None
 ) -> Trajectory:
     """Run one episode of a realised scenario in a world that is already built for it.
 
@@ -83,27 +83,35 @@ class Episode:
         scenario: A realised scenario.
         patience: How long the robot may stay at one place before it counts as stuck (s); a slow
             robot may stay longer.
+        rate: Decisions a second on wheels, which must divide 240; one every 0.3 s if None.
 
     Raises:
-        ValueError: If the world was built of other obstacles or another arena, or there is nothing
-            in it for wheels to drive on.
+        ValueError: If the world was built of other obstacles or another arena, there is nothing
+            in it for wheels to drive on, or the rate is not allowed.
 
     Attributes:
         outcome: How it ended; None while it goes on.
     """
 
-    def __init__(self, world: Sight, scenario: Scenario, *, patience: float = STUCK_TIME) -> None:
+    def __init__(
+        self,
+        world: SensorWorld,
+        scenario: Scenario,
+        *,
+        patience: float = STUCK_TIME,
+        rate: int | None = None,
+    ) -> None:
         if (world.obstacles, world.arena) != (scenario.obstacles, scenario.arena):
             raise ValueError(f"the world was not built for the scenario {scenario.name}")
         self._scenario = scenario
         self._field = world.field
-        self._driver = _driver(world, scenario)
+        self._driver = _driver(world, scenario, rate)
         self._decisions: list[tuple[int, Decision]] = []
         self._standstill = _Standstill(self.now, patience * self._driver.slowness)
         self.outcome: Outcome | None = None
 
     @property
-    def now(self) -> Tick:
+    def now(self) -> RobotState:
         """The latest tick."""
         return self._driver.ticks[-1]
 
@@ -188,22 +196,22 @@ class Episode:
         self.outcome = _outcome(self._driver, decision, count, limits, self._standstill)
 
 
-def _driver(world: Sight, scenario: Scenario) -> Driver:
+def _driver(world: SensorWorld, scenario: Scenario, rate: int | None) -> Driver:
     if scenario.drive == "kinematic":
         return KinematicDriver(world, scenario)
     if not isinstance(world, World):
         raise ValueError(f"the drive {scenario.drive} needs a world that can be touched")
-    return WheelsDriver(world, scenario)
+    return WheelsDriver(world, scenario, rate)
 
 
 class _Standstill:
     """Notices that the robot has stayed about one place for too long."""
 
-    def __init__(self, start: Tick, patience: float) -> None:
+    def __init__(self, start: RobotState, patience: float) -> None:
         self._anchor = start
         self._patience = patience
 
-    def lasts(self, now: Tick) -> bool:
+    def lasts(self, now: RobotState) -> bool:
         """Return whether the robot has been near one place for too long by now."""
         anchor = self._anchor
         if math.hypot(now.x - anchor.x, now.y - anchor.y) > STUCK_RADIUS:

@@ -21,6 +21,10 @@ class PlannerError(UserError):
     """A planner raised, exited, or decided nonsense; says which one, what, when and where."""
 
 
+class SensorError(UserError):
+    """A sensor model raised, or told what cannot be a length; says which one."""
+
+
 class Stopped(BaseException):
     """A signal asked the process to end: Ctrl-C, ``kill``, or its terminal went away.
 

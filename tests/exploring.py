@@ -9,7 +9,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning import Observation
+from fuzzyq_bullet.planning import Observation, RangeSensor
 from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
 
 RANGE, BODY, WIDE = 1.0, 0.2, 0.22
@@ -45,8 +45,10 @@ def observe(field, here, *, goal=(100.0, 0.0), time=0.0, sense=None):
         goal_radius=0.2,
         range=RANGE,
         radius=WIDE,
-        sense=sense or (lambda headings: field.free_distance(here, headings, WIDE, RANGE)),
-        look=lambda headings: field.free_distance(here, headings, 0.0, RANGE + WIDE),
+        sensor=RangeSensor(
+            sense or (lambda headings: field.free_distance(here, headings, WIDE, RANGE)),
+            lambda headings: field.free_distance(here, headings, 0.0, RANGE + WIDE),
+        ),
     )
 
 

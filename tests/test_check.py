@@ -30,13 +30,14 @@ PLANNERS = '''\
 """What breaks robots, for tests: each by the name of a planner."""
 
 import math, os, time
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
 from fuzzyq_bullet import Decision, PlannerSettings, episode, register_planner
 from fuzzyq_bullet.drives import wheels
-from fuzzyq_bullet.planning import ImprovedFuzzyPlanner, ImprovedFuzzySettings
+from fuzzyq_bullet.planning import ImprovedFuzzyPlanner, ImprovedFuzzySettings, RangeSensor
 
 
 class Settings(PlannerSettings):
@@ -65,7 +66,7 @@ class Bad:
             raise ValueError("no\\nway")
         elif self.how == "blind":
             nothing = lambda headings: np.full(len(headings), seen.range)
-            return self.good.decide(seen._replace(sense=nothing, look=nothing))
+            return self.good.decide(replace(seen, sensor=RangeSensor(nothing, nothing)))
         elif self.how == "no-brakes":
             return self.good.decide(seen)
         (gx, gy), (x, y) = seen.goal, seen.position
@@ -74,7 +75,7 @@ class Bad:
 
 register_planner("bad", Settings, lambda settings, rng: Bad(settings.how))
 
-sound, drive = wheels.ramp, episode.run
+sound, drive = wheels.limit_acceleration, episode.run
 
 
 def without_brakes(now, wanted, robot, dt):
@@ -84,7 +85,7 @@ def without_brakes(now, wanted, robot, dt):
 
 def run(scenario, **more):
     broken = getattr(scenario.planner, "how", "") == "no-brakes"
-    wheels.ramp = without_brakes if broken else sound
+    wheels.limit_acceleration = without_brakes if broken else sound
     return drive(scenario, **more)
 
 

@@ -7,16 +7,13 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet import metrics
-from fuzzyq_bullet.drives.apart import Apart
-from fuzzyq_bullet.drives.foresight import Foresight
-from fuzzyq_bullet.drives.pilot import Twist
-from fuzzyq_bullet.drives.wheels import TICK_STEPS
+from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.episode import Episode, run, run_in
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.oracle import shortest_path
-from fuzzyq_bullet.physics.sight import Sight
+from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import (
@@ -153,8 +150,7 @@ class Onward:
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 @pytest.mark.parametrize("away", [*np.linspace(0.3, 0.41, 12), 1.0, 2.5, 4.5])
-def test_a_touch_is_noticed_at_once_from_wherever_the_robot_came(drive, away, monkeypatch):
-    # The last two begin with nothing within 2 m, farther than the physics tells clearances.
+def test_a_touch_is_noticed_at_once_from_wherever_the_robot_came(drive, away):
     task = realise(
         scenario(
             arena=Arena(size=(12.0, 9.0)),
@@ -165,15 +161,13 @@ def test_a_touch_is_noticed_at_once_from_wherever_the_robot_came(drive, away, mo
         )
     )
     with World(task.obstacles, task.arena) as world:
-        hit = run_in(world, task, Onward()).collision
-        assert hit is not None
-        # The same with a look for contact after every step.
-        monkeypatch.setattr(Foresight, "free_steps", lambda self, tick, steps: 0)
-        monkeypatch.setattr(Apart, "by", lambda self, x, y, enough: 0.0)
-        assert run_in(world, task, Onward()).collision == hit
+        trajectory = run_in(world, task, Onward())
+    assert trajectory.collision is not None
+    # At full speed a physics step is 2.5 mm long.
+    assert abs(trajectory.ticks.clearance[-1]) < 0.003
 
 
-def test_while_no_touch_is_foreseen_the_robot_stays_clear_of_everything(monkeypatch):
+def test_whatever_the_twists_the_robot_is_never_inside_of_anything_unnoticed():
     # Wild twists among posts and boxes, from one contact to the next.
     rng = np.random.default_rng(3)
     obstacles = [cylinder(*at, radius=0.15) for at in rng.uniform(0.5, 5.5, (14, 2))]
@@ -181,27 +175,6 @@ def test_while_no_touch_is_foreseen_the_robot_stays_clear_of_everything(monkeypa
         Box(shape="box", position=tuple(at), size=(0.4, 0.3), yaw=at[0])
         for at in rng.uniform(0.5, 5.5, (8, 2))
     ]
-    foreseen, clear, promised = [], [], [0]
-    free_steps, advance = Foresight.free_steps, World.advance
-
-    def foreseeing(self, tick, steps):
-        promised[0] = free_steps(self, tick, steps)
-        foreseen.append(promised[0])
-        return promised[0]
-
-    def stepping(self, steps, *, apart):
-        for taken in range(1, steps + 1):
-            _, contact = advance(self, 1, apart=apart - taken + 1)
-            if promised[0] > 0:
-                state = self.robot.state()
-                clear.append(self.field.clearance([(state.x, state.y)])[0] - ROBOT_RADIUS)
-            promised[0] -= 1
-            if contact is not None:
-                return taken, contact
-        return steps, None
-
-    monkeypatch.setattr(Foresight, "free_steps", foreseeing)
-    monkeypatch.setattr(World, "advance", stepping)
     arena, told = Arena(size=(6.0, 6.0)), Decision(heading=0.0, step=0.0)
     with World(obstacles, arena) as world:
         free = [
@@ -215,17 +188,17 @@ def test_while_no_touch_is_foreseen_the_robot_stays_clear_of_everything(monkeypa
                 goal=Goal(position=(100.0, 100.0)),
                 obstacles=world.obstacles,
                 robot=Robot(max_speed=0.9, acceleration=0.6, turn_acceleration=8.0),
+                limits=Limits(steps=20),
             )
             episode = Episode(world, task)
-            for _ in range(20):
+            while episode.outcome is None:
                 episode.steer(Twist(*rng.uniform((0.2, -2.0), (0.9, 2.0))), told)
-                if episode.outcome is not None:
-                    break
+            ticks = episode.record().ticks
+            # Where it touched, by no more than a physics step; before, by no more than its margin.
+            assert ticks.clearance[-1] > -0.004
+            assert ticks.clearance[:-1].min() > -0.001
             collisions += episode.outcome == "collision"
     assert collisions > 15
-    foreseen = np.array(foreseen)
-    assert ((foreseen > 0) & (foreseen < TICK_STEPS)).sum() > 30  # close by, and still clear
-    assert min(clear) > 0.0
 
 
 def test_lines_of_another_shape_are_refused_and_not_told_of_other_decisions():
@@ -296,7 +269,7 @@ def test_a_step_a_little_longer_than_what_is_free_ends_at_the_touch(gap):
     start = Start(position=(2.0, 2.5))
     obstacles = (cylinder(2.0 + 2.0 * ROBOT_RADIUS + gap, 2.5),)
     task = realise(scenario(drive="kinematic", start=start, obstacles=obstacles))
-    with Sight(task.obstacles, task.arena) as world:
+    with SensorWorld(task.obstacles, task.arena) as world:
         trajectory = run_in(world, task, Onward())
     assert trajectory.outcome == "collision"
     assert trajectory.ticks.position[:, 0] == pytest.approx([2.0, 2.0 + gap], abs=1e-3)
@@ -305,7 +278,7 @@ def test_a_step_a_little_longer_than_what_is_free_ends_at_the_touch(gap):
 def test_wheels_need_a_world_that_can_be_touched():
     task = realise(scenario(drive="wheels"))
     with (
-        Sight(task.obstacles, task.arena) as world,
+        SensorWorld(task.obstacles, task.arena) as world,
         pytest.raises(ValueError, match="wheels needs a world that can be touched"),
     ):
         run_in(world, task, Onward())
@@ -338,13 +311,25 @@ def test_everything_that_a_picture_needs_is_recorded(crossing):
     assert np.abs(ideal - ticks.speed).max() < 0.03
 
 
+def least_distance_of_bodies(world):
+    """Return the distance (m) that PyBullet sees from the robot's body to obstacles and walls."""
+    robot, client = world.robot.body, world.engine.client
+    return min(
+        point[8]
+        for body in (world.obstacle_body, world.walls)
+        for point in world.engine.api.getClosestPoints(
+            robot, body, 10.0, -1, -1, physicsClientId=client
+        )
+    )
+
+
 def test_the_recorded_clearance_is_that_of_the_bodies_in_the_physics(crossing):
     ticks = crossing.ticks
     with World(crossing.scenario.obstacles, crossing.scenario.arena) as world:
         seen = zip(ticks.position, ticks.heading, ticks.clearance, strict=True)
         for (x, y), heading, told in seen:
             world.robot.place(x, y, heading)
-            assert told == pytest.approx(world.clearance(x, y), abs=0.002)
+            assert told == pytest.approx(least_distance_of_bodies(world), abs=0.002)
 
 
 def test_a_record_survives_the_disk(crossing, tmp_path):
@@ -435,3 +420,16 @@ def test_among_too_many_obstacles_nobody_waits_for_the_shortest_path(item, each,
         result = result_of(replace(trajectory, scenario=task))
         assert (result.shortest_path_m, result.spl) == (None, None)
     assert len(asked) == 1
+
+
+def test_decisions_may_come_more_often():
+    task = realise(scenario(obstacles=(cylinder(2.5, 2.6),), limits=Limits(time=3.0)))
+    with World(task.obstacles, task.arena) as world:
+        episode = Episode(world, task, rate=20)
+        while episode.outcome is None:
+            episode.advance(make().decide(episode.observe()))
+        taken = episode.record()
+        assert np.diff(taken.ticks.time[taken.decisions.tick]) == pytest.approx(0.05)
+        for rate in (7, 120):
+            with pytest.raises(ValueError, match="no whole number of physics steps"):
+                Episode(world, task, rate=rate)

@@ -9,7 +9,7 @@ from exploring import observe
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning import MODES, Decision, ImprovedFuzzySettings, Observation
+from fuzzyq_bullet.planning import MODES, Decision, ImprovedFuzzySettings, Observation, RangeSensor
 from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
 from fuzzyq_bullet.planning.exploration import NEAR
 from fuzzyq_bullet.planning.path_follower import PATIENCE as FOLLOWER_PATIENCE
@@ -142,8 +142,7 @@ def blocked_ahead(position, difference):
         goal_radius=0.2,
         range=1.0,
         radius=0.22,
-        sense=sense,
-        look=lambda headings: sense(headings) + 0.2,
+        sensor=RangeSensor(sense, lambda headings: sense(headings) + 0.2),
     )
     return routine, observation
 

@@ -153,9 +153,9 @@ SIMPLE = "name: simple\nstart: {position: [2, 5]}\ngoal: {position: [8, 5]}\ndri
 
 def run_with(planner: object, scenario: Scenario) -> None:
     from fuzzyq_bullet.episode import run_in
-    from fuzzyq_bullet.physics.sight import Sight
+    from fuzzyq_bullet.physics.sensor_world import SensorWorld
 
-    with Sight(scenario.obstacles, scenario.arena) as world:
+    with SensorWorld(scenario.obstacles, scenario.arena) as world:
         run_in(world, scenario, planner)  # type: ignore[arg-type]
 
 
@@ -199,10 +199,10 @@ def test_a_jump_is_as_near_to_things_as_its_whole_way() -> None:
             return Decision(heading=0.0, step=20.0)
 
     from fuzzyq_bullet.episode import run_in
-    from fuzzyq_bullet.physics.sight import Sight
+    from fuzzyq_bullet.physics.sensor_world import SensorWorld
 
     scenario = parse_scenario(JUMP)
-    with Sight(scenario.obstacles, scenario.arena) as world:
+    with SensorWorld(scenario.obstacles, scenario.arena) as world:
         result = result_of(run_in(world, scenario, Jumper()))  # type: ignore[arg-type]
     assert (result.outcome, result.steps, result.min_clearance_m) == ("goal", 1, 0.05)
     assert unmet_expectations(Expect(min_clearance=0.06), result)

@@ -24,7 +24,7 @@ from gymnasium.vector import AsyncVectorEnv
 
 import fuzzyq_bullet.gym
 from fuzzyq_bullet import Decision
-from fuzzyq_bullet.drives.pilot import Twist
+from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.gym.env import EpisodeEnv

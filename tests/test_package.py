@@ -213,13 +213,13 @@ def test_a_trajectory_is_one_short_line_and_equal_to_its_like() -> None:
 def test_what_python_users_may_do_wrong_is_one_clear_error(tmp_path: Path) -> None:
     from fuzzyq_bullet.episode import Episode, run_in
     from fuzzyq_bullet.learning import load_policy
-    from fuzzyq_bullet.physics.sight import Sight
+    from fuzzyq_bullet.physics.sensor_world import SensorWorld
     from fuzzyq_bullet.planning import ImprovedFuzzyPlanner, ImprovedFuzzySettings
     from fuzzyq_bullet.scenario import dump_scenario, parse_scenario
 
     boxes = with_options(load_scenario("boxes"), drive="kinematic")
     mixed = with_options(load_scenario("mixed"), drive="kinematic")
-    with Sight(boxes.obstacles, boxes.arena) as world:
+    with SensorWorld(boxes.obstacles, boxes.arena) as world:
         with pytest.raises(ValueError, match="the world was not built for the scenario mixed"):
             run_in(world, mixed, ImprovedFuzzyPlanner(ImprovedFuzzySettings()))
         episode = Episode(world, boxes)

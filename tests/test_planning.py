@@ -16,6 +16,7 @@ from fuzzyq_bullet.planning import (
     Motion,
     Observation,
     PlannerSettings,
+    RangeSensor,
     make_planner,
     planner_names,
     register_planner,
@@ -51,8 +52,7 @@ def seen(lengths, *, goal=(5.0, 0.0), heading=0.0, speed=0.0, turn_rate=0.0, mot
         goal_radius=0.2,
         range=1.0,
         radius=0.22,
-        sense=sense,
-        look=sense,
+        sensor=RangeSensor(sense, sense),
         motion=motion,
     )
     return observation, asked

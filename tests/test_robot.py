@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fuzzyq_bullet.drives.pilot import STILL, Twist, ramp
+from fuzzyq_bullet.drives.velocity_controller import STILL, Twist, limit_acceleration
 from fuzzyq_bullet.drives.wheels import COMMAND_STEPS
 from fuzzyq_bullet.physics.engine import TIME_STEP
 from fuzzyq_bullet.physics.robot import wheel_commands
@@ -30,7 +30,7 @@ def drive(world, wanted_at, seconds):
     for step in range(round(seconds / TIME_STEP)):
         if step % COMMAND_STEPS == 0:
             wanted = wanted_at(step * TIME_STEP, path, heading - 0.3, now)
-            now = ramp(now, wanted, LIMITS, COMMAND_STEPS * TIME_STEP)
+            now = limit_acceleration(now, wanted, LIMITS, COMMAND_STEPS * TIME_STEP)
             world.robot.command(*wheel_commands(*now))
         world.advance(1)
         half = heading + now.turn_rate * TIME_STEP / 2
@@ -104,7 +104,7 @@ def test_it_keeps_its_limits_of_acceleration(world):
     now = STILL
     for step in range(240):
         if step % COMMAND_STEPS == 0:
-            now = ramp(now, Twist(0.6, 0.0), LIMITS, COMMAND_STEPS * TIME_STEP)
+            now = limit_acceleration(now, Twist(0.6, 0.0), LIMITS, COMMAND_STEPS * TIME_STEP)
             world.robot.command(*wheel_commands(*now))
         world.advance(1)
         speeds.append(world.robot.state().speed)

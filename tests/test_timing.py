@@ -1,11 +1,12 @@
 """Ratios of times: what else goes on in a machine must not decide them."""
 
-from fuzzyq_bullet.experiments.timing import interleaved, least_ratio, median_ratio
+import json
 
+import pytest
 
-def test_the_least_times_tell_the_ratio_however_much_is_added_to_most_of_the_others():
-    quick, slow = [[2.0, 2.9, 9.0], [1.5, 1.0, 7.0]], [[8.0, 4.0, 4.5], [6.0, 11.0, 2.0]]
-    assert least_ratio(quick, slow) == 3.0 / 6.0
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.experiments.speed import Row, as_json, as_table
+from fuzzyq_bullet.experiments.timing import interleaved, median_ratio
 
 
 def test_the_median_is_that_of_the_pairs_of_a_round():
@@ -18,3 +19,21 @@ def test_works_take_turns_and_each_time_is_its_own():
     times = interleaved(works, 3, clock=lambda: next(now) ** 2)
     assert "".join(done) == "ababab"
     assert times == [[1, 9, 17], [5, 13, 21]]
+
+
+def test_a_rate_that_the_physics_cannot_keep_is_refused(inside):
+    with pytest.raises(UserError, match="--rate: must divide 240 and be from 1 to 80, got 7"):
+        inside("bench", "speed", "--rate", 7)
+
+
+def test_the_table_says_what_was_measured_what_is_aimed_at_and_whether_it_is_met():
+    rows = [
+        Row("quick enough", 45.0, 40.0, "at least", "so"),
+        Row("too slow", 1.2, 1.15, "at most", "so"),
+        Row("unknown", None, 80.0, "at least", "not installed"),
+    ]
+    assert [row.met for row in rows] == [True, False, True]
+    assert [one["met"] for one in json.loads(as_json(rows))] == [True, False, True]
+    verdicts = [list(column.cells) for column in as_table(rows).columns]
+    assert verdicts[1] == ["45.00", "1.20", "not measured"]
+    assert verdicts[3] == ["met", "MISSED", ""]

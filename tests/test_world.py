@@ -1,7 +1,6 @@
 """The world: what stands in it is there, whatever its number, and every touch is noticed."""
 
 import math
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -10,10 +9,16 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.physics.lines import SPREAD
-from fuzzyq_bullet.physics.robot import wheel_commands
-from fuzzyq_bullet.physics.world import CLEARANCE_RANGE, SENSOR_MARGIN, SENSOR_RANGE, World
+from fuzzyq_bullet.physics.robot import BODY_HEIGHT, wheel_commands
+from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.scenario import MIN_RADIUS, ROBOT_RADIUS, Arena, Box, Cylinder
+from fuzzyq_bullet.sensors import (
+    SENSOR_MARGIN,
+    SENSOR_RANGE,
+    SPREAD,
+    CorridorSensor,
+    ExactSensor,
+)
 
 FIELD = Arena(size=(6.0, 6.0))
 
@@ -30,6 +35,16 @@ def cylinder(x, y, radius=0.2):
 
 def box(x, y, length, width, yaw=0.0):
     return Box(shape="box", position=(x, y), size=(length, width), yaw=yaw)
+
+
+def sensor_of(world):
+    return CorridorSensor(
+        ExactSensor(),
+        world.cast,
+        radius=ROBOT_RADIUS,
+        height=BODY_HEIGHT,
+        rng=np.random.default_rng(0),
+    )
 
 
 def run_into(world, x, y, heading, speed=0.3, steps=2000):
@@ -101,22 +116,6 @@ def test_wheels_and_ground_are_no_contact(engine):
     assert run_into(world, 2.0, 3.0, 0.0, steps=240) == (240, None)
 
 
-@pytest.mark.parametrize("far", [0.01, 0.1, 0.5, 1.2])
-def test_clearance_is_the_distance_between_the_surfaces(engine, far):
-    world = World([cylinder(3.0, 3.0), box(1.0, 1.0, 0.4, 0.4, 0.7)], FIELD, engine=engine)
-    x = 3.0 + 0.2 + ROBOT_RADIUS + far
-    world.robot.place(x, 3.0, 1.0)
-    assert world.clearance(x, 3.0) == pytest.approx(far, abs=0.002)
-
-
-def test_clearance_is_found_again_after_a_jump_towards_something(engine):
-    world = World([cylinder(3.0, 3.0)], Arena(size=(50.0, 50.0)), engine=engine)
-    for x, expected in ((3.45, 0.05), (10.0, math.inf), (3.5, 0.1), (4.5, 1.1), (3.42, 0.02)):
-        world.robot.place(x, 3.0, 0.0)
-        assert world.clearance(x, 3.0) == pytest.approx(expected, abs=0.002)
-    assert CLEARANCE_RANGE < 6.6
-
-
 size = st.floats(0.05, 1.5)
 place = st.floats(0.0, 6.0)
 obstacle = st.one_of(
@@ -137,7 +136,7 @@ def test_a_line_is_never_longer_than_the_way_to_contact(engine, obstacles, origi
         return
     world = World(obstacles, FIELD, engine=engine)
     headings = heading + np.linspace(0.0, 6.0, 12)
-    sensed = np.array(world.sense(origin, headings))
+    sensed = np.array(sensor_of(world).sense(origin, headings))
     truth = field.free_distance(origin, headings, ROBOT_RADIUS, SENSOR_RANGE)
     assert (sensed <= truth + SENSOR_MARGIN).all()
     assert (sensed >= 0.0).all()
@@ -163,7 +162,7 @@ def test_lines_agree_with_exact_geometry_on_random_worlds(engine):
             headings = rng.uniform(-math.pi, math.pi, 9)
             truth = field.free_distance(origin, headings, wide, SENSOR_RANGE)
             met = truth < SENSOR_RANGE  # a free line is right of itself and proves nothing
-            errors.append(np.abs(world.sense(tuple(origin), headings) - truth)[met])
+            errors.append(np.abs(sensor_of(world).sense(tuple(origin), headings) - truth)[met])
     errors = np.concatenate(errors)
     assert errors.size > 1000
     assert np.median(errors) <= 0.01 * SENSOR_RANGE
@@ -174,7 +173,7 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
     for shape in (lambda y: box(2.5, y, least, least), lambda y: cylinder(2.5, y, MIN_RADIUS)):
         for lateral in np.arange(-0.2, 0.2, 0.004):
             world = World([shape(3.0 + lateral)], FIELD, engine=engine)
-            [ahead] = world.sense((2.0, 3.0), [0.0])
+            [ahead] = sensor_of(world).sense((2.0, 3.0), [0.0])
             assert ahead < 0.5
     offsets = (ROBOT_RADIUS + SENSOR_MARGIN) * np.concatenate([-SPREAD[::-1], SPREAD])
     assert np.diff(offsets).max() < least
@@ -185,68 +184,8 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
 def test_what_stands_beside_the_robot_does_not_stop_it(engine, side, length):
     # 1 cm beside its way, inside the margin of the line: it may go on, the geometry says so.
     world = World([box(3.0, 3.0 + side * 0.5, length, 1.0)], FIELD, engine=engine)
-    [along] = world.sense((3.0, 3.0 - side * (ROBOT_RADIUS + 0.01)), [0.0])
+    [along] = sensor_of(world).sense((3.0, 3.0 - side * (ROBOT_RADIUS + 0.01)), [0.0])
     assert along == SENSOR_RANGE
-
-
-def test_who_knows_that_nothing_stands_beside_the_robot_is_told_the_same_by_fewer_rays(engine):
-    rng = np.random.default_rng(7)
-    probed, fewer = 0, []
-    for _ in range(6):
-        obstacles = [
-            cylinder(*rng.uniform(0, 6, 2), rng.choice([0.05, 0.2, 0.4]))
-            if rng.random() < 0.5
-            else box(*rng.uniform(0, 6, 2), *rng.uniform(0.05, 1.0, 2), rng.uniform(-3, 3))
-            for _ in range(60)
-        ]
-        field = Field.of(obstacles, FIELD)
-        world = World(obstacles, FIELD, engine=engine)
-        for origin in rng.uniform(0.2, 5.8, (200, 2)).tolist():
-            apart = field.clearance([origin])[0] - ROBOT_RADIUS
-            if apart < 0.0:
-                continue
-            headings = rng.uniform(-math.pi, math.pi, 4).tolist()
-            with counting_rays(world) as cast:
-                told = world.sense(origin, headings, apart=apart)
-            probed += cast[0] == 4 * (2 * SPREAD.size + 2)
-            fewer += [apart] * (cast[0] == 4 * 2 * SPREAD.size)
-            assert told == world.sense(origin, headings)
-    assert probed > 20  # near enough to something for a probe
-    assert len(fewer) > 200
-    assert min(fewer) < 2.0 * SENSOR_MARGIN
-
-
-def test_it_is_the_same_beside_the_corner_of_something_huge(engine):
-    # A ray meets a face of 100 m up to a centimetre beyond its end.
-    obstacles = [box(-45.0, -45.0, 100.0, 100.0), box(205.0, 205.0, 1.0, 1.0)]
-    world = World(obstacles, Arena(size=(300.0, 300.0), walls=False), engine=engine)
-    for origin, heading in (((5.2253, 5.0141), 1.635), ((5.0141, 5.2253), -0.064)):
-        apart = world.field.clearance([origin])[0] - ROBOT_RADIUS
-        assert 0.025 < apart < 0.05
-        assert world.sense(origin, [heading], apart=apart) == world.sense(origin, [heading])
-    rng = np.random.default_rng(5)
-    for away, angle in rng.uniform((0.22, -0.5), (0.26, 2.0), (400, 2)):
-        origin = (5.0 + away * math.cos(angle), 5.0 + away * math.sin(angle))
-        apart = world.field.clearance([origin])[0] - ROBOT_RADIUS
-        headings = rng.uniform(-math.pi, math.pi, 6).tolist()
-        assert world.sense(origin, headings, apart=apart) == world.sense(origin, headings)
-
-
-@contextmanager
-def counting_rays(world):
-    api, cast = world._api, [0]
-
-    class Counting:
-        def __getattr__(self, name):
-            return getattr(api, name)
-
-        def rayTestBatch(self, starts, *rest, **named):  # noqa: N802
-            cast[0] += len(starts)
-            return api.rayTestBatch(starts, *rest, **named)
-
-    world._api = Counting()
-    yield cast
-    world._api = api
 
 
 def test_a_ray_meets_a_face_up_to_its_very_ends(engine):
@@ -257,10 +196,10 @@ def test_a_ray_meets_a_face_up_to_its_very_ends(engine):
         for aside in (1e-6, 1e-3, 0.5, 1.0 - 1e-3, 1.0 - 1e-6):
             along = 2.5 + aside
             start = (along, y + math.copysign(0.5, y - 3.0))
-            [down] = world.look(start, [math.copysign(math.pi / 2, 3.0 - y)])
+            [down] = sensor_of(world).look(start, [math.copysign(math.pi / 2, 3.0 - y)])
             assert down == pytest.approx(0.5, abs=1e-6)
             start = (x + math.copysign(0.5, x - 3.0), along)
-            [across] = world.look(start, [math.pi if x > 3.0 else 0.0])
+            [across] = sensor_of(world).look(start, [math.pi if x > 3.0 else 0.0])
             assert across == pytest.approx(0.5, abs=1e-6)
 
 
@@ -269,7 +208,7 @@ def test_ten_thousand_obstacles_are_all_sensed(engine):
     world = World(grid, Arena(size=(121.0, 121.0)), engine=engine)
     for index in (0, 99, 4321, 9999):
         x, y = grid[index].position
-        [ahead] = world.sense((x - 0.9, y), [0.0])
+        [ahead] = sensor_of(world).sense((x - 0.9, y), [0.0])
         assert ahead == pytest.approx(0.9 - 0.2 - ROBOT_RADIUS - SENSOR_MARGIN, abs=0.01)
 
 

@@ -24,20 +24,30 @@ def _bench() -> None:
 def speed(
     *,
     rounds: Annotated[int, typer.Option(min=1, max=100, help="Interleaved rounds.")] = 7,
+    rate: Annotated[
+        int, typer.Option(help="Decisions a simulated second: a divisor of 240, at most 80.")
+    ] = 20,
     json: Json = False,
 ) -> None:
-    """Compare the cost of the loop, the video and the controller with what bounds them.
+    """Measure the speed of episodes, films and the controller against what they should reach.
 
-    Exit code 1 when a target is missed.
+    Exit code 1 when an aim is missed.
+
+    Raises:
+        UserError: If the rate is not allowed.
     """
     from fuzzyq_bullet.cli.console import progress_bar, say
-    from fuzzyq_bullet.experiments.speed import MEASUREMENTS, as_json, as_table, measure
+    from fuzzyq_bullet.errors import UserError
+    from fuzzyq_bullet.experiments.speed import MEASUREMENTS, as_json, as_table
+
+    if not 1 <= rate <= 80 or 240 % rate:
+        raise UserError(f"--rate: must divide 240 and be from 1 to 80, got {rate}")
 
     rows = []
     with progress_bar("measuring", len(MEASUREMENTS)) as (progress, bar):
         for measurement in MEASUREMENTS:
             progress.update(bar, note=measurement.name)
-            rows += measure(measurement, rounds)
+            rows += measurement.rows(rounds, rate)
             progress.advance(bar)
     if json:
         typer.echo(as_json(rows))
@@ -47,7 +57,7 @@ def speed(
         Console(highlight=False).print(as_table(rows))
     missed = [row for row in rows if not row.met]
     if missed:
-        say("targets missed: " + "; ".join(row.what for row in missed), style="bold")
+        say("aims missed: " + "; ".join(row.what for row in missed), style="bold")
         raise typer.Exit(1)
 
 

@@ -1,52 +1,76 @@
-"""What an episode needs of a drive, whichever it is."""
+"""What both drives share: where the robot was, and what it observes."""
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+import math
+from abc import ABC, abstractmethod
 
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Observation
+import numpy as np
+
+from fuzzyq_bullet.physics.robot import BODY_HEIGHT, RobotState
+from fuzzyq_bullet.physics.sensor_world import SensorWorld
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Motion, Observation
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.scenario.models import Robot
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Robot, Scenario
+from fuzzyq_bullet.sensors import SENSOR_RANGE, CorridorSensor
 from fuzzyq_bullet.trajectory import Collision
 
 
-class Tick(NamedTuple):
-    """The robot at one instant; units as in ``trajectory.Ticks``."""
-
-    time: float
-    x: float
-    y: float
-    heading: float
-    speed: float
-    turn_rate: float
-    left_wheel: float
-    right_wheel: float
-
-
-class Driver(Protocol):
+class Driver(ABC):
     """Moves the robot by one decision at a time and records where it was.
 
+    Args:
+        world: The world of the scenario.
+        scenario: A realised scenario.
+        motion: Limits of the robot's body, or None for a point that has no inertia.
+
     Attributes:
-        ticks: Every tick so far; the first is the start.
+        ticks: Its state at every tick so far; the first is the start.
         steps: Steps of the simulation so far.
         collision: The first contact, after which the run is over.
         arrived: Whether the robot is where it should be.
         slowness: How many times as long as usual the robot is to be waited for, at least 1.
     """
 
-    ticks: list[Tick]
-    steps: int
-    collision: Collision | None
-    arrived: bool
-    slowness: float
+    def __init__(self, world: SensorWorld, scenario: Scenario, motion: Motion | None) -> None:
+        # The seed's third stream: the first places the obstacles, the second is the planner's.
+        rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(2,)))
+        self._sensor = CorridorSensor(
+            scenario.sensor, world.cast, radius=ROBOT_RADIUS, height=BODY_HEIGHT, rng=rng
+        )
+        self._field = world.field
+        self._goal = scenario.goal
+        self._motion = motion
+        self.ticks: list[RobotState] = []
+        self.steps = 0
+        self.collision: Collision | None = None
+        self.arrived = False
+        self.slowness = 1.0 if motion is None else motion.slowness
 
     def observe(self) -> Observation:
-        """Return what the planner may know now."""
-        ...
+        """Return what the planner may know at the latest tick."""
+        now = self.ticks[-1]
+        still = self._motion is None  # what has no inertia has no speed that matters
+        return Observation(
+            time=now.time,
+            position=(now.x, now.y),
+            heading=now.heading,
+            speed=0.0 if still else now.speed,
+            turn_rate=0.0 if still else now.turn_rate,
+            goal=self._goal.position,
+            goal_radius=self._goal.radius,
+            range=SENSOR_RANGE,
+            radius=self._sensor.radius,
+            sensor=self._sensor.at((now.x, now.y)),
+            motion=self._motion,
+        )
 
+    @abstractmethod
     def advance(self, decision: Decision) -> None:
         """Carry out one decision until the next one is due, a contact, or the arrival."""
-        ...
+
+    def _in_goal(self, state: RobotState) -> bool:
+        return math.dist((state.x, state.y), self._goal.position) <= self._goal.radius
 
 
 def longest_step_time(robot: Robot) -> float:

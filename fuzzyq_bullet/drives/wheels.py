@@ -5,16 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from fuzzyq_bullet.drives.base import Tick
-from fuzzyq_bullet.drives.foresight import Foresight
-from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
-from fuzzyq_bullet.drives.sensor import CastOnce
+from fuzzyq_bullet.drives.base import Driver
+from fuzzyq_bullet.drives.velocity_controller import (
+    STILL,
+    Twist,
+    VelocityController,
+    limit_acceleration,
+)
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
-from fuzzyq_bullet.physics.robot import wheel_commands
-from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
-from fuzzyq_bullet.planning.base import Motion, Observation
+from fuzzyq_bullet.physics.robot import RobotState, wheel_commands
+from fuzzyq_bullet.physics.world import World
+from fuzzyq_bullet.planning.base import Motion
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.sensors import SENSOR_MARGIN
 from fuzzyq_bullet.trajectory import Collision
 
 COMMAND_STEPS = 3
@@ -22,7 +26,6 @@ COMMAND_STEPS = 3
 limit never asks the tyres for a jump they cannot hold."""
 TICK_STEPS = 36
 """Physics steps between two ticks: one every 0.15 s."""
-TICK_TIME = TICK_STEPS * TIME_STEP
 DECISION_TICKS = 2
 """Ticks between two decisions: one every 0.3 s."""
 
@@ -30,56 +33,47 @@ RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05
 
 
-class WheelsDriver:
-    """Drives a world's robot by its wheels, watching for contact after every physics step."""
+class WheelsDriver(Driver):
+    """Drives a world's robot by its wheels, watching for contact after every physics step.
 
-    def __init__(self, world: World, scenario: Scenario) -> None:
-        self._world = world
-        self._goal = scenario.goal
-        self._limits = scenario.robot
-        self._motion = Motion(
-            max_speed=scenario.robot.max_speed,
-            max_turn_rate=scenario.robot.max_turn_rate,
-            acceleration=scenario.robot.acceleration,
-            turn_acceleration=scenario.robot.turn_acceleration,
-            period=DECISION_TICKS * TICK_TIME,
+    Args:
+        world: The world of the scenario.
+        scenario: A realised scenario.
+        rate: Decisions a second; None for one every 0.3 s.
+
+    Raises:
+        ValueError: If the rate does not divide 240, or is above 80.
+    """
+
+    def __init__(self, world: World, scenario: Scenario, rate: int | None = None) -> None:
+        self._tick_steps, self._decision_ticks = TICK_STEPS, DECISION_TICKS
+        if rate is not None:  # a tick for every decision
+            self._tick_steps, left_over = divmod(round(1.0 / TIME_STEP), rate)
+            self._decision_ticks = 1
+            if left_over or self._tick_steps < COMMAND_STEPS:
+                raise ValueError(f"{rate} decisions a second are no whole number of physics steps")
+        tick_time = self._tick_steps * TIME_STEP
+        limits = scenario.robot
+        motion = Motion(
+            max_speed=limits.max_speed,
+            max_turn_rate=limits.max_turn_rate,
+            acceleration=limits.acceleration,
+            turn_acceleration=limits.turn_acceleration,
+            period=self._decision_ticks * tick_time,
             radius=ROBOT_RADIUS,
             margin=SENSOR_MARGIN,
         )
-        self._pilot = Pilot(scenario.robot, TICK_TIME)
-        self._foresight = Foresight(world.field, scenario.robot)
+        super().__init__(world, scenario, motion)
+        self._world = world
+        self._limits = limits
+        self._controller = VelocityController(limits, tick_time)
         self._twist = STILL
-        self.steps = 0
-        self.collision: Collision | None = None
-        self.arrived = False
-        self.slowness = self._motion.slowness
-        self.ticks: list[Tick] = []
         world.robot.place(*scenario.start.position, scenario.start_heading())
         self._record()
 
-    def observe(self) -> Observation:
-        """Return the observation at the latest tick."""
-        now = self.ticks[-1]
-        position = (now.x, now.y)
-        sensor = CastOnce(self._world, position, self._foresight.apart(now, TICK_STEPS))
-        return Observation(
-            time=now.time,
-            position=position,
-            heading=now.heading,
-            speed=now.speed,
-            turn_rate=now.turn_rate,
-            goal=self._goal.position,
-            goal_radius=self._goal.radius,
-            range=SENSOR_RANGE,
-            radius=ROBOT_RADIUS + SENSOR_MARGIN,
-            sense=sensor,
-            look=sensor.look,
-            motion=self._motion,
-        )
-
     def advance(self, decision: Decision) -> None:
         """Follow the decision for one decision period."""
-        self._aim(lambda heading, travelled: self._pilot.twist(decision, heading, travelled))
+        self._aim(lambda heading, travelled: self._controller.twist(decision, heading, travelled))
 
     def steer(self, twist: Twist) -> None:
         """Hold a twist for one decision period; in the goal the robot stops by itself.
@@ -102,7 +96,7 @@ class WheelsDriver:
                 decision (m).
         """
         travelled = 0.0
-        for _ in range(DECISION_TICKS):
+        for _ in range(self._decision_ticks):
             before = self.ticks[-1]
             wanted = STILL if self._in_goal(before) else twist_at(before.heading, travelled)
             contact = self._drive(wanted)
@@ -118,20 +112,18 @@ class WheelsDriver:
 
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
-        world, limits, now, left = self._world, self._limits, self._twist, TICK_STEPS
-        apart = self._foresight.free_steps(self.ticks[-1], TICK_STEPS)
+        world, limits, now, left = self._world, self._limits, self._twist, self._tick_steps
         while left:
             stride = left
             if now != wanted:
                 stride = min(COMMAND_STEPS, left)
-                self._twist = now = ramp(now, wanted, limits, stride * TIME_STEP)
+                self._twist = now = limit_acceleration(now, wanted, limits, stride * TIME_STEP)
                 world.robot.command(*wheel_commands(*now))
-            taken, contact = world.advance(stride, apart=apart)
+            taken, contact = world.advance(stride)
             self.steps += taken
             if contact is not None:
                 return contact
             left -= stride
-            apart -= stride
         return None
 
     def _collision(self, contact: Contact) -> Collision:
@@ -140,17 +132,13 @@ class WheelsDriver:
         return Collision(
             time=self.steps * TIME_STEP,
             point=(x, y),
-            obstacle=-1 if wall else int(self._world.field.distances((x, y)).argmin()),
+            obstacle=-1 if wall else int(self._field.distances((x, y)).argmin()),
             normal_force=contact.force,
         )
 
-    def _in_goal(self, tick: Tick) -> bool:
-        return math.dist((tick.x, tick.y), self._goal.position) <= self._goal.radius
-
     def _record(self) -> None:
-        robot = self._world.robot
-        self.ticks.append(Tick(self.steps * TIME_STEP, *robot.state(), *robot.wheel_speeds()))
+        self.ticks.append(self._world.robot.state(self.steps * TIME_STEP))
 
 
-def _at_rest(tick: Tick) -> bool:
-    return abs(tick.speed) < RESTING_SPEED and abs(tick.turn_rate) < RESTING_TURN_RATE
+def _at_rest(state: RobotState) -> bool:
+    return abs(state.speed) < RESTING_SPEED and abs(state.turn_rate) < RESTING_TURN_RATE

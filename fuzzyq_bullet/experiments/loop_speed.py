@@ -1,44 +1,138 @@
-"""How much of an episode is physics: the whole loop against bare ``stepSimulation``."""
+"""How fast an episode runs: against real time, against bare physics, and among many obstacles."""
 
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from unittest import mock
 
 import numpy as np
 
-from fuzzyq_bullet.episode import run_in
+from fuzzyq_bullet.consult import build_planner
+from fuzzyq_bullet.episode import Episode
+from fuzzyq_bullet.experiments.timing import interleaved
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.planning import ImprovedFuzzySettings, make_planner
 from fuzzyq_bullet.scenario import Arena, Goal, Limits, Random, Scenario, Start, realise
 
+COUNTS = (125, 1000)
+"""Numbers of obstacles that are compared."""
+FIELDS = 3
+"""Fields of each number."""
 SIMULATED = 20.0
 """Simulated time of one timed episode (s)."""
-MOST = 1000
-SIDE = math.sqrt(MOST / (125 / 100.0))
+SIDE = math.sqrt(max(COUNTS) / (125 / 100.0))
 """Side of the arena (m) in which 1000 obstacles are as dense as the paper's 125 in 10 × 10 m."""
 
 
 @dataclass(frozen=True)
-class Loop:
-    """One prepared pair of works over the same motion.
+class LoopTimes:
+    """Times of episodes among one number of obstacles.
 
     Attributes:
-        whole: Runs the episode with sensing, planning, contacts and recording.
-        bare: Only steps the physics, with the wheel commands of the same episode.
-        simulated: Simulated time of either (s).
+        whole: Processor time of a simulated second (s), one a round: sensing, planning, contacts
+            and recording included.
+        bare: The same of ``stepSimulation`` alone, with the wheel commands of the same episodes.
+        decisions: Time of each decision (s), from asking for the observation to having decided.
     """
 
-    whole: Callable[[], object]
-    bare: Callable[[], object]
-    simulated: float
+    whole: list[float]
+    bare: list[float]
+    decisions: list[float]
 
 
-def prepare(count: int, seed: int) -> Loop:
-    """Build a world of ``count`` obstacles, at most 1000, and return both works in it.
+@dataclass(frozen=True)
+class _Loop:
+    """One world with an episode to run in it again and again."""
+
+    world: World
+    scenario: Scenario
+    rate: int
+    decisions: list[float] = field(default_factory=list)
+
+    def whole(self) -> Episode:
+        """Run the episode with its planner."""
+        rng = np.random.default_rng(self.scenario.seed)
+        planner = build_planner(self.scenario.planner, rng)
+        episode = Episode(self.world, self.scenario, rate=self.rate)
+        while episode.outcome is None:
+            start = time.perf_counter()
+            decision = planner.decide(episode.observe())
+            self.decisions.append(time.perf_counter() - start)
+            episode.advance(decision)
+        return episode
+
+    def bare(self) -> tuple[Callable[[], object], float]:
+        """Return what only steps the physics through the same motion, and for how long (s)."""
+        commands, steps = self._commands()
+        robot, engine, start = self.world.robot, self.world.engine, self.scenario.start
+
+        def work() -> None:
+            robot.place(*start.position, self.scenario.start_heading())
+            for step in range(steps):
+                if (command := commands.get(step)) is not None:
+                    robot.command(*command)
+                engine.api.stepSimulation(physicsClientId=engine.client)
+
+        return work, steps * TIME_STEP
+
+    def _commands(self) -> tuple[dict[int, tuple[float, float]], int]:
+        """Run the episode once and return its wheel commands by physics step, and how many."""
+        given: dict[int, tuple[float, float]] = {}
+        taken = 0
+        advance, command = self.world.advance, self.world.robot.command
+
+        def counting(steps: int) -> tuple[int, Contact | None]:
+            nonlocal taken
+            done = advance(steps)
+            taken += done[0]
+            return done
+
+        def noting(left: float, right: float) -> None:
+            given[taken] = (left, right)
+            command(left, right)
+
+        with (
+            mock.patch.object(self.world, "advance", counting),
+            mock.patch.object(self.world.robot, "command", noting),
+        ):
+            self.whole()
+        self.decisions.clear()  # the first are slower: much is loaded in them
+        return given, taken
+
+
+def compare(rounds: int, rate: int) -> list[LoopTimes]:
+    """Time episodes of the default planner, and their bare physics, in turn.
+
+    Args:
+        rounds: How often each is timed.
+        rate: Decisions a simulated second.
+
+    Returns:
+        One for each of ``COUNTS``.
+    """
+    loops = [_Loop(*_field(count, seed), rate) for count in COUNTS for seed in range(FIELDS)]
+    bare = [loop.bare() for loop in loops]
+    works = [
+        work for loop, (only, _) in zip(loops, bare, strict=True) for work in (loop.whole, only)
+    ]
+    times = interleaved(works, rounds)
+    results = []
+    for k in range(len(COUNTS)):
+        own = slice(k * FIELDS, (k + 1) * FIELDS)
+        simulated = sum(seconds for _, seconds in bare[own])
+        whole, only = (
+            [sum(of_round) / simulated for of_round in zip(*times[kind::2][own], strict=True)]
+            for kind in (0, 1)
+        )
+        results.append(LoopTimes(whole, only, [t for loop in loops[own] for t in loop.decisions]))
+    return results
+
+
+def _field(count: int, seed: int) -> tuple[World, Scenario]:
+    """Return a world of ``count`` obstacles and its scenario.
 
     Fewer obstacles are those nearest to the way of the robot out of the same 1000, so that the
     robot meets the same things and drives the same way, whatever the number.
@@ -50,51 +144,10 @@ def prepare(count: int, seed: int) -> Loop:
             arena=Arena(size=(SIDE, SIDE)),
             start=Start(position=(1.0, 1.0)),
             goal=Goal(position=(9.0, 9.0)),
-            planner=ImprovedFuzzySettings(weights=(1.0, 1.0)),
-            random=Random(count=MOST),
+            random=Random(count=max(COUNTS)),
             limits=Limits(time=SIMULATED),
         )
     )
     nearest = sorted(full.obstacles, key=lambda one: math.dist(one.position, (5.0, 5.0)))
     scenario = full.model_copy(update={"obstacles": tuple(nearest[:count])})
-    world = World(scenario.obstacles, scenario.arena)
-
-    def whole() -> int:
-        planner = make_planner(scenario.planner, np.random.default_rng(seed))
-        return run_in(world, scenario, planner).physics_steps
-
-    commands, steps = _commands(world, whole)
-    robot, api, client = world.robot, world.engine.api, world.engine.client
-
-    def bare() -> None:
-        robot.place(*scenario.start.position, scenario.start_heading())
-        for step in range(steps):
-            if (command := commands.get(step)) is not None:
-                robot.command(*command)
-            api.stepSimulation(physicsClientId=client)
-
-    return Loop(whole, bare, steps * TIME_STEP)
-
-
-def _commands(world: World, whole: Callable[[], int]) -> tuple[dict[int, tuple[float, float]], int]:
-    """Run the episode once and return its wheel commands by physics step, and how many steps."""
-    given: dict[int, tuple[float, float]] = {}
-    taken = 0
-    advance, command = world.advance, world.robot.command
-
-    def counting(steps: int, *, apart: int = 0) -> tuple[int, Contact | None]:
-        nonlocal taken
-        done = advance(steps, apart=apart)
-        taken += done[0]
-        return done
-
-    def noting(left: float, right: float) -> None:
-        given[taken] = (left, right)
-        command(left, right)
-
-    with (
-        mock.patch.object(world, "advance", counting),
-        mock.patch.object(world.robot, "command", noting),
-    ):
-        whole()
-    return given, taken
+    return World(scenario.obstacles, scenario.arena), scenario

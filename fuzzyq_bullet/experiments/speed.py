@@ -1,25 +1,21 @@
-"""``fuzzyq bench speed``: what the project promises about its own speed, measured.
-
-Every figure but the oracle's seconds is a ratio of two pieces of work timed in turn within one run,
-so that a slow or busy machine changes both alike.
-"""
+"""``fuzzyq bench speed``: what the project promises about its own speed, measured."""
 
 from __future__ import annotations
 
 import json
 import subprocess
 import sys
+import tempfile
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from statistics import median
+from pathlib import Path
+from statistics import median, quantiles
 from typing import Literal
 
 from rich.table import Table
 
-from fuzzyq_bullet.experiments.timing import interleaved, least_ratio, median_ratio
-
-MORE_ROUNDS = 3
-"""Rounds of the episode loop for each round of the rest: its target is close, and it is short."""
+from fuzzyq_bullet.experiments.timing import interleaved, median_ratio
 
 
 @dataclass(frozen=True)
@@ -29,25 +25,23 @@ class Row:
     Attributes:
         what: What was compared.
         figure: The figure; None where it could not be measured.
-        target: What it should be.
-        sense: Whether the target is a least or a most.
-        detail: The absolute figures behind it, for orientation only.
+        aim: What it should be.
+        sense: Whether the aim is a least or a most.
+        detail: The absolute figures behind it.
     """
 
     what: str
     figure: float | None
-    target: float
+    aim: float
     sense: Literal["at least", "at most"]
     detail: str
 
     @property
     def met(self) -> bool:
-        """Whether the target is met; what was not measured misses nothing."""
+        """Whether the aim is met; what was not measured misses nothing."""
         if self.figure is None:
             return True
-        return (
-            self.figure >= self.target if self.sense == "at least" else self.figure <= self.target
-        )
+        return self.figure >= self.aim if self.sense == "at least" else self.figure <= self.aim
 
 
 @dataclass(frozen=True)
@@ -56,80 +50,121 @@ class Measurement:
 
     Attributes:
         name: What to call it while it runs.
-        rows: Measures, given the number of rounds.
+        rows: Measures, given the number of rounds and the decisions a second.
     """
 
     name: str
-    rows: Callable[[int], list[Row]]
+    rows: Callable[[int, int], list[Row]]
 
 
-def _loop(rounds: int) -> list[Row]:
-    from fuzzyq_bullet.experiments.loop_speed import prepare
+def _loop(rounds: int, rate: int) -> list[Row]:
+    from fuzzyq_bullet.experiments.loop_speed import compare
 
-    counts, fields = (125, 1000), 3
-    loops = [prepare(count, seed) for count in counts for seed in range(fields)]
-    # The two of a pair follow each other at once, and there are many pairs: what they are to tell
-    # is no larger than what else goes on in a machine changes from one second to the next.
-    works = [work for loop in loops for work in (loop.whole, loop.bare)]
-    times = interleaved(works, MORE_ROUNDS * rounds)
-    rows = []
-    seconds = []  # what a simulated second costs, by the number of obstacles
-    for k, count in enumerate(counts):
-        own = slice(k * fields, (k + 1) * fields)
-        all_of_it = [sum(of_round) for of_round in zip(*times[::2][own], strict=True)]
-        simulated = sum(loop.simulated for loop in loops[own])
-        seconds.append([taken / simulated for taken in all_of_it])
-        rows.append(
-            Row(
-                f"episode loop against bare physics, {count} obstacles",
-                least_ratio(times[1::2][own], times[::2][own]),
-                0.85,
-                "at least",
-                f"{simulated / min(all_of_it):.0f} × real time",
-            )
-        )
-    few, many = seconds
-    rows.append(
-        Row(
-            "cost of a simulated second, 1000 obstacles against 125",
-            median_ratio(many, few),
-            1.15,
-            "at most",
-            f"{1e3 * min(many):.1f} ms against {1e3 * min(few):.1f} ms",
-        )
-    )
-    return rows
-
-
-def _escape(rounds: int) -> list[Row]:
-    from fuzzyq_bullet.experiments.escape_speed import compare
-
-    costs = compare(rounds)
+    few, many = compare(rounds, rate)
+    among = f"125 obstacles, {rate} decisions a second"
+    decisions = f"{len(few.decisions)} decisions among {among}"
     return [
         Row(
-            "cost of a simulated second, 125 obstacles against 25, escape included",
-            median_ratio(costs.many, costs.few),
-            1.25,
-            "at most",
-            f"{1e3 * min(costs.many):.1f} ms against {1e3 * min(costs.few):.1f} ms; "
-            f"{costs.escaping:.0%} of the decisions escape",
+            f"real time factor of one core, {among}",
+            1.0 / median(few.whole),
+            40.0,
+            "at least",
+            f"{1e3 * median(few.whole):.1f} ms for a simulated second",
         ),
         Row(
-            "seconds of the oracle for 125 obstacles",
-            median(costs.oracle),
-            1.0,
+            f"share of bare physics in that time, {among}",
+            median_ratio(few.bare, few.whole),
+            0.5,
+            "at least",
+            f"{1e3 * median(few.bare):.1f} ms for a simulated second",
+        ),
+        Row(
+            "time of a simulated second, 1000 obstacles against 125",
+            median_ratio(many.whole, few.whole),
+            1.15,
             "at most",
-            "the slowest of four fields, nothing remembered",
+            f"{1e3 * median(many.whole):.1f} ms against {1e3 * median(few.whole):.1f} ms",
+        ),
+        Row(
+            "time of one decision, median (ms)",
+            1e3 * median(few.decisions),
+            0.6,
+            "at most",
+            decisions,
+        ),
+        Row(
+            "time of one decision, 99th percentile (ms)",
+            1e3 * quantiles(few.decisions, n=100)[-1],
+            20.0,
+            "at most",
+            f"longest {1e3 * max(few.decisions):.1f} ms",
         ),
     ]
 
 
-def _inference(rounds: int) -> list[Row]:
+def _film(rounds: int, rate: int) -> list[Row]:
+    from fuzzyq_bullet.experiments.video_speed import compare
+
+    times = compare(rounds)
+    return [
+        Row(
+            "film against encoding ready-made frames",
+            median_ratio(times.encoding, times.pipeline),
+            0.7,
+            "at least",
+            f"{times.frames / median(times.pipeline):.0f} frames/s against "
+            f"{times.frames / median(times.encoding):.0f}",
+        ),
+        Row(
+            "film against real time, 720p",
+            times.seconds / median(times.pipeline),
+            6.0,
+            "at least",
+            f"{times.seconds:.1f} s of film in {median(times.pipeline):.1f} s",
+        ),
+    ]
+
+
+def _run(rounds: int, rate: int) -> list[Row]:
+    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video import record
+
+    taken = []
+    with tempfile.TemporaryDirectory(prefix="fuzzyq-") as name:
+        command = [
+            sys.executable,
+            "-m",
+            "fuzzyq_bullet",
+            "run",
+            "mixed",
+            "--replace",
+            "--out",
+            name,
+        ]
+        for _ in range(min(rounds, 3)):
+            start = time.perf_counter()
+            subprocess.run(command, capture_output=True, check=True)
+            taken.append(time.perf_counter() - start)
+        seconds = record(
+            Trajectory.load(Path(name) / "mixed.npz"), Path(name) / "again.mp4"
+        ).seconds
+    return [
+        Row(
+            "fuzzyq run mixed, start to finished film, against the film's length",
+            seconds / median(taken),
+            5.0,
+            "at least",
+            f"{seconds:.1f} s of film in {median(taken):.1f} s",
+        )
+    ]
+
+
+def _inference(rounds: int, rate: int) -> list[Row]:
     import numpy as np
 
     from fuzzyq_bullet.fuzzy import paper_controller
 
-    what = "one inference against the same controller in pyfuzzylite"
+    what = "one inference against pyfuzzylite"
     try:
         from fuzzyq_bullet.experiments.fuzzylite_twin import FuzzyliteTwin
 
@@ -152,95 +187,26 @@ def _inference(rounds: int) -> list[Row]:
 
     own, other = interleaved([ours, theirs], rounds)
     each, twins = ([t / n for t in times] for times, n in ((own, 100 * repeats), (other, 100)))
-    return [
-        Row(
-            what,
-            median_ratio(twins, each),
-            80.0,
-            "at least",
-            f"{1e6 * min(each):.1f} µs against {1e6 * min(twins):.0f} µs",
-        )
-    ]
-
-
-def _video(rounds: int) -> list[Row]:
-    from fuzzyq_bullet.experiments.video_speed import compare
-
-    times = compare(rounds)
-    return [
-        Row(
-            "video against encoding ready-made frames",
-            median_ratio(times.encoding, times.pipeline),
-            0.55,
-            "at least",
-            f"{times.frames / min(times.pipeline):.0f} frames/s against "
-            f"{times.frames / min(times.encoding):.0f}",
-        ),
-        Row(
-            "video against rendering every whole frame",
-            median_ratio(times.whole_frame, [t / times.frames for t in times.pipeline]),
-            25.0,
-            "at least",
-            f"{1e3 * min(times.pipeline) / times.frames:.1f} ms a frame against "
-            f"{1e3 * min(times.whole_frame):.0f} ms",
-        ),
-        Row(
-            "video against real time",
-            median_ratio([times.seconds] * len(times.pipeline), times.pipeline),
-            3.0,
-            "at least",
-            f"{times.seconds:.1f} s of video in {min(times.pipeline):.1f} s",
-        ),
-    ]
-
-
-def _help(rounds: int) -> list[Row]:
-    heavy = ("pybullet", "matplotlib")
-    code = (
-        "import sys\n"
-        "from fuzzyq_bullet.cli import main\n"
-        "sys.argv = ['fuzzyq', '--help']\n"
-        "try:\n"
-        "    main()\n"
-        "except SystemExit:\n"
-        "    pass\n"
-        f"print([name for name in {heavy!r} if name in sys.modules], file=sys.stderr)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    loaded = json.loads(done.stderr.strip().splitlines()[-1].replace("'", '"'))
-    return [
-        Row(
-            "heavy libraries that --help imports",
-            float(len(loaded)),
-            0.0,
-            "at most",
-            ", ".join(loaded) or f"neither {' nor '.join(heavy)}",
-        )
-    ]
+    detail = f"{1e6 * median(each):.1f} µs against {1e6 * median(twins):.0f} µs"
+    return [Row(what, median_ratio(twins, each), 80.0, "at least", detail)]
 
 
 MEASUREMENTS: Sequence[Measurement] = (
-    Measurement("the episode loop", _loop),
-    Measurement("ways out", _escape),
-    Measurement("the video", _video),
+    Measurement("episodes", _loop),
+    Measurement("the film", _film),
+    Measurement("a whole run", _run),
     Measurement("the controller", _inference),
-    Measurement("the command line", _help),
 )
-
-
-def measure(measurement: Measurement, rounds: int) -> list[Row]:
-    """Return the rows of one measurement."""
-    return measurement.rows(rounds)
 
 
 def as_table(rows: Sequence[Row]) -> Table:
     """Return the rows as a table for a terminal."""
-    table = Table("compared", "figure", "target", "", "in absolute terms, here and now", box=None)
+    table = Table("compared", "measured", "aim", "", "in absolute terms, here and now", box=None)
     table.columns[1].justify = "right"
     for row in rows:
         figure = "not measured" if row.figure is None else f"{row.figure:.2f}"
         verdict = "" if row.figure is None else ("met" if row.met else "MISSED")
-        table.add_row(row.what, figure, f"{row.sense} {row.target:g}", verdict, row.detail)
+        table.add_row(row.what, figure, f"{row.sense} {row.aim:g}", verdict, row.detail)
     return table
 
 

@@ -34,20 +34,6 @@ def interleaved(
     return times
 
 
-def least_ratio(over: Sequence[Sequence[float]], under: Sequence[Sequence[float]]) -> float:
-    """Return the ratio of two sums of least times.
-
-    What else goes on in a machine only ever adds to a time, and more to a work whose code and data
-    must be fetched anew than to one that turns in a small circle: the least of many is what comes
-    nearest to both alone.
-
-    Args:
-        over: For each piece of work of the one kind, its times (s).
-        under: The same for the other kind.
-    """
-    return sum(map(min, over)) / sum(map(min, under))
-
-
 def median_ratio(over: Sequence[float], under: Sequence[float]) -> float:
     """Return the median of the ratios taken pair by pair within each round."""
     return median(a / b for a, b in zip(over, under, strict=True))

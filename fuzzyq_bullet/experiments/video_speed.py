@@ -1,11 +1,10 @@
-"""How fast a video is made: against the encoder alone, and against the plain way to render."""
+"""How fast a film is made: against the encoder alone, and against real time."""
 
 from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,20 +15,14 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.experiments.timing import interleaved
-from fuzzyq_bullet.physics.camera import add_mesh, shoot
-from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
-from fuzzyq_bullet.resources import asset
 from fuzzyq_bullet.scenario import Goal, Limits, Random, Scenario, Start
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video import record
 from fuzzyq_bullet.video.compositor import Compositor
 from fuzzyq_bullet.video.encoders import Encoder, FrameBuffer
 from fuzzyq_bullet.video.record import moments
-from fuzzyq_bullet.video.scene import still_meshes
-from fuzzyq_bullet.video.style import HEIGHT, WIDTH
 from fuzzyq_bullet.video.timeline import Timeline
-from fuzzyq_bullet.video.viewpoint import lens_for
 
 Frames: TypeAlias = NDArray[np.uint8]
 
@@ -43,42 +36,27 @@ class VideoTimes:
         seconds: How long it plays (s).
         pipeline: Making the whole video from a record.
         encoding: Only encoding its frames, which lie ready.
-        whole_frame: Rendering one whole frame of its 3-D scene.
     """
 
     frames: int
     seconds: float
     pipeline: list[float]
     encoding: list[float]
-    whole_frame: list[float]
 
 
 def compare(rounds: int) -> VideoTimes:
-    """Time the three ways over the same run among 125 obstacles, in turn."""
+    """Time both over the same run among 125 obstacles, in turn."""
     trajectory = _trajectory()
     with tempfile.TemporaryDirectory(prefix="fuzzyq-") as name:
         folder = Path(name)
         info = record(trajectory, folder / "pipeline.mp4")
         frames = _ready_made(trajectory, folder / "frames.raw", info.frames)
-        with _plain_renderer(trajectory) as render:
-            works: list[Callable[[], object]] = [
-                partial(record, trajectory, folder / "pipeline.mp4"),
-                partial(_encode, frames, folder / "encoding.mp4"),
-                render,
-            ]
-            pipeline, encoding, whole = interleaved(works, rounds, clock=time.perf_counter)
-    return VideoTimes(info.frames, info.seconds, pipeline, encoding, whole)
-
-
-@contextmanager
-def _plain_renderer(trajectory: Trajectory) -> Iterator[Callable[[], object]]:
-    """Yield the plain way to a frame: TinyRenderer over all of the scene, at the video's size."""
-    lens = lens_for(trajectory, (WIDTH, HEIGHT))
-    with Engine() as engine:
-        for mesh in still_meshes(trajectory, lens)[0]:
-            add_mesh(engine, mesh)
-        engine.load(asset("robot.urdf"), position=(5.0, 5.0, 0.0), visible=True)
-        yield partial(shoot, engine, lens, (0, 0, WIDTH, HEIGHT))
+        works: list[Callable[[], object]] = [
+            partial(record, trajectory, folder / "pipeline.mp4"),
+            partial(_encode, frames, folder / "encoding.mp4"),
+        ]
+        pipeline, encoding = interleaved(works, rounds, clock=time.perf_counter)
+    return VideoTimes(info.frames, info.seconds, pipeline, encoding)
 
 
 def _trajectory() -> Trajectory:

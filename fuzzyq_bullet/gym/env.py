@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.gym.picture import picture
-from fuzzyq_bullet.gym.sight import Vector, box_of, vector_of
+from fuzzyq_bullet.gym.spaces import Vector, box_of, vector_of
 from fuzzyq_bullet.gym.tasks import TaskSource
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.world import World

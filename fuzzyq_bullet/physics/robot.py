@@ -18,21 +18,27 @@ MOTOR_TORQUE = 3.0
 
 
 class RobotState(NamedTuple):
-    """Where the robot is and how it moves.
+    """The robot at one instant.
 
     Attributes:
+        time: Simulated time (s).
         x: Centre between the wheels (m).
         y: Centre between the wheels (m).
         heading: Direction it faces (rad).
         speed: Forward speed (m/s).
-        turn_rate: Turn rate (rad/s).
+        turn_rate: Turn rate (rad/s), positive to the left.
+        left_wheel: Measured speed of the left wheel (rad/s).
+        right_wheel: Measured speed of the right wheel (rad/s).
     """
 
+    time: float
     x: float
     y: float
     heading: float
     speed: float
     turn_rate: float
+    left_wheel: float
+    right_wheel: float
 
 
 class Robot:
@@ -83,9 +89,12 @@ class Robot:
             physicsClientId=self._engine.client,
         )
 
-    def state(self) -> RobotState:
-        """Return the robot's planar state."""
-        # Arguments by position, here and below: keywords cost as much as some of these calls.
+    def state(self, time: float = 0.0) -> RobotState:
+        """Return the robot's state now.
+
+        Args:
+            time: What time it is (s), which the engine does not know.
+        """
         client = self._engine.client
         (x, y, _), (i, j, k, w) = self._api.getBasePositionAndOrientation(self.body, client)
         (vx, vy, _), (_, _, turn_rate) = self._api.getBaseVelocity(self.body, client)
@@ -93,18 +102,17 @@ class Robot:
         heading = math.atan2(2.0 * (w * k + i * j), 1.0 - 2.0 * (j * j + k * k))
         cos, sin = math.cos(heading), math.sin(heading)
         # PyBullet tells the centre of mass, which lies a little towards the caster.
+        left, right = self._api.getJointStates(self.body, self._wheels, client)
         return RobotState(
+            time,
             x - self._mass_x * cos,
             y - self._mass_x * sin,
             heading,
             vx * cos + vy * sin,
             turn_rate,
+            left[1],
+            right[1],
         )
-
-    def wheel_speeds(self) -> tuple[float, float]:
-        """Return the measured speeds of the left and right wheel (rad/s)."""
-        left, right = self._api.getJointStates(self.body, self._wheels, self._engine.client)
-        return left[1], right[1]
 
 
 def wheel_commands(speed: float, turn_rate: float) -> tuple[float, float]:

@@ -1,6 +1,6 @@
 """Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
 
-from fuzzyq_bullet.planning.base import Motion, Observation, Planner
+from fuzzyq_bullet.planning.base import Motion, Observation, Planner, RangeSensor
 from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, FuzzyQLambdaPlanner
@@ -42,6 +42,7 @@ __all__ = [
     "PlannerSettings",
     "QLambdaSettings",
     "QLearningSettings",
+    "RangeSensor",
     "RoutineSettings",
     "make_planner",
     "planner_names",

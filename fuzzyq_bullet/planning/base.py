@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple, Protocol, TypeAlias
+from dataclasses import dataclass, field
+from numbers import Real
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.planning.decision import Decision, Numbers
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -19,12 +20,13 @@ STEP_UNIT = 0.2
 LONGEST_STRIDE = 2.0
 """Upper end of N_s: the longest step is this many S_p."""
 
-RangeSensor: TypeAlias = Callable[[Sequence[float]], Sequence[float]]
+Sense: TypeAlias = Callable[[Sequence[float]], Sequence[float]]
 """Free distances (m) along world headings (rad), one for each, in one batch."""
-ThinRays: TypeAlias = Callable[[Sequence[float]], Floats]
-"""Distances (m) along world headings (rad), shape (K,), in one batch."""
+Look: TypeAlias = Callable[[Sequence[float]], Numbers]
+"""Distances (m) to what stands along world headings (rad), one for each, in one batch."""
 
-
+MOST_HEADINGS = 1000
+"""Most that may be asked for at once: PyBullet silently drops what is too much for one batch."""
 USUAL_SPEED = 0.6
 """Greatest speed (m/s) of the robot that all patience was measured with."""
 USUAL_HALF_TURN = 2.0
@@ -71,8 +73,85 @@ class Motion:
         return max(1.0, USUAL_SPEED / self.max_speed, half_turn / USUAL_HALF_TURN)
 
 
-class Observation(NamedTuple):
+class RangeSensor:
+    """What can be asked of the robot's sensor at one instant.
+
+    Parts of a planner ask in turn, often for the same: nothing is sensed twice. What is stored
+    (pickled) is what was told: a stored sensor answers the same questions again, and no others.
+
+    Args:
+        sense: Free distances of the robot's disc (m) along world headings (rad), one for each.
+        look: Distances (m) from the robot's centre to what stands along world headings (rad).
+    """
+
+    def __init__(self, sense: Sense, look: Look) -> None:
+        self._sense = sense
+        self._look = look
+        self._lines: dict[float, float] = {}
+        self._rays: dict[tuple[float, ...], Floats] = {}
+
+    def sense(self, headings: Sequence[float]) -> list[float]:
+        """Return the free distance (m) of the robot's disc along each of the headings (rad).
+
+        Raises:
+            ValueError: If a heading is no finite number, or there are more than 1000.
+            LookupError: If the sensor was stored, and not asked for one of them before.
+        """
+        _check(headings)
+        known = self._lines
+        missing = [heading for heading in dict.fromkeys(headings) if heading not in known]
+        if missing:
+            known.update(zip(missing, self._sense(missing), strict=True))
+        return [known[heading] for heading in headings]
+
+    def look(self, headings: Sequence[float]) -> Floats:
+        """Return the distance (m) to what stands along each of the headings (rad), shape (K,).
+
+        Raises:
+            ValueError: If a heading is no finite number, or there are more than 1000.
+            LookupError: If the sensor was stored, and not asked for the same before.
+        """
+        _check(headings)
+        asked = tuple(headings)
+        if asked not in self._rays:
+            self._rays[asked] = np.array(self._look(headings) if asked else (), dtype=np.float64)
+        return self._rays[asked].copy()
+
+    def __reduce__(self) -> tuple[Callable[..., RangeSensor], tuple[object, object]]:
+        return _stored, (self._lines, self._rays)
+
+
+def _stored(lines: dict[float, float], rays: dict[tuple[float, ...], Floats]) -> RangeSensor:
+    """Return a sensor that tells again what it told before it was stored."""
+    sensor = RangeSensor(_not_asked, _not_asked)
+    sensor._lines.update(lines)
+    sensor._rays.update(rays)
+    return sensor
+
+
+def _not_asked(headings: Sequence[float]) -> Sequence[float]:
+    raise LookupError(f"a stored sensor was not asked for {len(headings)} of these headings")
+
+
+def _check(headings: Sequence[float]) -> None:
+    """Let nothing through that PyBullet would answer with nonsense.
+
+    Raises:
+        ValueError: If a heading is no finite number, or there are too many.
+    """
+    if len(headings) > MOST_HEADINGS:
+        raise ValueError(f"{len(headings)} headings at once; at most {MOST_HEADINGS} are allowed")
+    for heading in headings:
+        if not isinstance(heading, Real) or not math.isfinite(heading):
+            raise ValueError(f"a heading must be a finite number, got {heading!r:.60}")
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
     """All a planner may know at one instant. It cannot see the map.
+
+    Observations can be stored by ``pickle`` and compared: two are equal if everything but their
+    sensors is equal. ``dataclasses.replace`` returns one with other values.
 
     Attributes:
         time: Time since the start (s).
@@ -84,9 +163,7 @@ class Observation(NamedTuple):
         goal_radius: Radius of the goal (m).
         range: Longest distance the sensor tells (m): 5·S_p in the paper.
         radius: Half the width of a detection line (m): the robot's radius and a margin.
-        sense: The range sensor: free distance along any world headings.
-        look: The same sensor's single rays: distance from the robot's centre to what stands there,
-            at most ``range + radius``.
+        sensor: What else can be sensed at this instant.
         motion: Limits of a body that must turn and brake, or None for the paper's point robot,
             which faces any way at once and stops at once (Eq. 17).
     """
@@ -100,9 +177,28 @@ class Observation(NamedTuple):
     goal_radius: float
     range: float
     radius: float
-    sense: RangeSensor
-    look: ThinRays
+    sensor: RangeSensor = field(compare=False, repr=False)
     motion: Motion | None = None
+
+    def sense(self, headings: Sequence[float]) -> list[float]:
+        """Return the free distance (m) along each of the world headings (rad).
+
+        It is how far the robot's disc, and a margin, can move: at most ``range``.
+
+        Raises:
+            ValueError: If a heading is no finite number, or there are more than 1000.
+        """
+        return self.sensor.sense(headings)
+
+    def look(self, headings: Sequence[float]) -> Floats:
+        """Return the distance (m) from the robot's centre to what stands along each heading (rad).
+
+        These are single rays; shape (K,), each at most ``range + radius``.
+
+        Raises:
+            ValueError: If a heading is no finite number, or there are more than 1000.
+        """
+        return self.sensor.look(headings)
 
     @property
     def slowness(self) -> float:

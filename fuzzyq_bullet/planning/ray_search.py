@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from fuzzyq_bullet.planning.base import RangeSensor
+from fuzzyq_bullet.planning.base import Sense
 
 COARSE = math.radians(2.5)
 """Angle between neighbouring rays (rad). The paper's 45° find no path through a dense field."""
@@ -36,7 +36,7 @@ class FreeHeading(NamedTuple):
 
 
 def ray_search(
-    sense: RangeSensor, start: float, side: int, enough: float, limit: float = math.tau
+    sense: Sense, start: float, side: int, enough: float, limit: float = math.tau
 ) -> FreeHeading | None:
     """Turn from ``start`` to one side until a ray is free.
 
@@ -67,7 +67,7 @@ def ray_search(
     return None
 
 
-def eased(sense: RangeSensor, found: FreeHeading, side: int, enough: float) -> FreeHeading:
+def eased(sense: Sense, found: FreeHeading, side: int, enough: float) -> FreeHeading:
     """Return a heading found at the edge of an obstacle, turned a little further away from it.
 
     Args:
@@ -86,7 +86,7 @@ def eased(sense: RangeSensor, found: FreeHeading, side: int, enough: float) -> F
 
 
 def _rays(
-    sense: RangeSensor, start: float, side: int, first: float, step: float, count: int
+    sense: Sense, start: float, side: int, first: float, step: float, count: int
 ) -> Iterator[tuple[float, float]]:
     """Yield how far the ray is turned and its free distance; cast a batch only when asked for."""
     for begin in range(0, count, AT_ONCE):

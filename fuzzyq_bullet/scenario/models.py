@@ -11,7 +11,15 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationError, ValidationInfo
+from pydantic import (
+    BeforeValidator,
+    Field,
+    SerializeAsAny,
+    ValidationError,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
@@ -34,6 +42,7 @@ from fuzzyq_bullet.scenario.shapes import (
     Obstacle,
     Point,
 )
+from fuzzyq_bullet.sensors.base import SENSORS, AnySensor, ExactSensor, SensorModel
 
 Drive: TypeAlias = Literal["wheels", "kinematic"]
 
@@ -130,6 +139,16 @@ def _choose_planner(value: Any, info: ValidationInfo) -> Any:
     return settings_for(name).model_validate({**value, "name": name})
 
 
+def _choose_sensor(
+    value: Any, choose: ValidatorFunctionWrapHandler, info: ValidationInfo
+) -> SensorModel:
+    name = value.get("model") if isinstance(value, Mapping) else None
+    if info.context == ANY_NAME and isinstance(name, str) and name not in SENSORS.names():
+        return SensorModel(model=name[:_LONGEST_NAME])
+    sensor: SensorModel = choose(value)
+    return sensor
+
+
 class Scenario(Model):
     """One run, as asked for."""
 
@@ -142,6 +161,9 @@ class Scenario(Model):
     start: Start
     goal: Goal
     robot: Robot = Robot()
+    sensor: Annotated[AnySensor, WrapValidator(_choose_sensor)] = Field(
+        default=ExactSensor(), description="What the robot senses with."
+    )
     planner: Annotated[SerializeAsAny[PlannerSettings], BeforeValidator(_choose_planner)] = Field(
         default_factory=_default_planner,
         description="A planner's name, or its parameters with or without the name.",

@@ -14,6 +14,7 @@ from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner
 from fuzzyq_bullet.scenario.expectations import expect_model
 from fuzzyq_bullet.scenario.models import Obstacle, Scenario
 from fuzzyq_bullet.scenario.shapes import ANGLE_KEYS
+from fuzzyq_bullet.sensors import SENSORS
 from fuzzyq_bullet.wording import did_you_mean, shorten
 
 if TYPE_CHECKING:
@@ -112,8 +113,8 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
 
 
 def _without_tag(loc: Loc) -> Loc:
-    """Drop the shape that pydantic puts behind an obstacle's index, and the layout's name."""
-    if loc[0] == "random":
+    """Drop the names of shape, layout and sensor, which pydantic puts behind their places."""
+    if loc[0] in ("random", "sensor"):
         return loc[:1] + loc[2:]
     return loc[:2] + loc[3:] if loc[0] == "obstacles" and loc[2:3] and loc[2] in _SHAPES else loc
 
@@ -196,6 +197,8 @@ def _keys_at(loc: Loc, data: Any) -> list[str]:
         here, loc = [settings_for(str(name))], loc[1:]
     if loc[:1] == ("expect",):
         here, loc = [expect_model()], loc[1:]
+    if loc[:1] == ("sensor",):
+        here, loc = list(SENSORS), loc[1:]
     for part in loc:
         inner = [
             found
@@ -217,7 +220,7 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 
 def _tags(kind: type[BaseModel]) -> tuple[Any, ...]:
     """Return the values that choose this model among others, as pydantic puts them into places."""
-    for key in ("shape", "layout"):
+    for key in ("shape", "layout", "model"):
         if key in kind.model_fields:
             return typing.get_args(kind.model_fields[key].annotation)
     return ()

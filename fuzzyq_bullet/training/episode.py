@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.physics.engine import Engine
+from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision
@@ -79,13 +79,13 @@ class TrainingEpisode:
         """How the episode stands; ``collision`` once anything was hit, whatever came after."""
         return "collision" if self._hit else self._episode.outcome or "going on"
 
-    def _to_goal(self, tick: Tick) -> float:
+    def _to_goal(self, tick: RobotState) -> float:
         """Return the distance to the goal that is left (m)."""
         if self._distances is not None:
             return self._distances.at(tick.x, tick.y)
         return math.dist((tick.x, tick.y), self._scenario.goal.position)
 
-    def _put_back(self, tick: Tick) -> None:
+    def _put_back(self, tick: RobotState) -> None:
         """Go on from an earlier tick, unless the episode's time or decisions are used up."""
         self._hit = True
         time = self._scenario.limits.time - self._episode.now.time

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.physics.camera import Lens, Mesh
-from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
+from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for, extent, footprint
 

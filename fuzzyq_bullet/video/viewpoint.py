@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.physics.camera import Lens
-from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT
+from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory

@@ -1,8 +1,8 @@
 """What the rays see: the upright faces of all obstacles and walls, as triangle meshes.
 
 A ray against a triangle mesh costs a fifth of a ray against the same convex shapes. Only rays meet
-these meshes; the robot's body meets the exact shapes of ``physics.static``. Round faces become
-polygons around the circle, so that a distance is never told longer than it is.
+these meshes; the robot's body meets the exact shapes of ``physics.obstacle_urdf``. Round faces
+become polygons around the circle, so that a distance is never told longer than it is.
 
 All rays run level, at one height. So a face needs no more than one triangle, that stands on this
 height and is there as wide as the face: half as many as would fill it, and a faster search.
@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.physics.static import OBSTACLE_HEIGHT
+from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
 from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
 
 ROUNDNESS = 0.001

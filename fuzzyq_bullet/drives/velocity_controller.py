@@ -24,7 +24,7 @@ class Twist(NamedTuple):
 STILL = Twist(0.0, 0.0)
 
 
-class Pilot:
+class VelocityController:
     """Follows decisions within the robot's limits.
 
     Args:
@@ -69,18 +69,13 @@ class Pilot:
         return math.sqrt(lost * lost + 2.0 * self._robot.acceleration * reach) - lost
 
 
-def ramp(now: Twist, wanted: Twist, robot: Robot, dt: float) -> Twist:
+def limit_acceleration(now: Twist, wanted: Twist, robot: Robot, dt: float) -> Twist:
     """Return the twist after ``dt`` seconds of moving towards the wanted one within the limits."""
-    # Written out: there are 80 commands in a simulated second.
-    (speed, turn_rate), (fast, quick) = now, wanted
-    most = robot.acceleration * dt
-    if fast > speed + most:
-        fast = speed + most
-    elif fast < speed - most:
-        fast = speed - most
-    most = robot.turn_acceleration * dt
-    if quick > turn_rate + most:
-        quick = turn_rate + most
-    elif quick < turn_rate - most:
-        quick = turn_rate - most
-    return Twist(fast, quick)
+    return Twist(
+        _towards(now.speed, wanted.speed, robot.acceleration * dt),
+        _towards(now.turn_rate, wanted.turn_rate, robot.turn_acceleration * dt),
+    )
+
+
+def _towards(now: float, wanted: float, most: float) -> float:
+    return max(now - most, min(wanted, now + most))

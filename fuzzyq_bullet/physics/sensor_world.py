@@ -1,0 +1,124 @@
+"""A world to be seen: the faces of obstacles and walls, and the rays that meet them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import IntFlag
+from operator import itemgetter
+from typing import TypeAlias, TypeVar
+
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.physics.engine import Engine
+from fuzzyq_bullet.physics.ray_mesh import meshes
+from fuzzyq_bullet.physics.robot import BODY_HEIGHT
+from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
+
+Point: TypeAlias = tuple[float, float, float]
+
+_FRACTION = itemgetter(2)
+"""Of what PyBullet tells of a ray: where it ended as a part of its length."""
+_Self = TypeVar("_Self", bound="SensorWorld")
+
+
+class Group(IntFlag):
+    """Collision groups: what a body belongs to, and in masks what it meets."""
+
+    RAYS = 1  # PyBullet's own: every ray belongs to it and hits only what admits it
+    WHEELS = 2
+    BODY = 4
+    OBSTACLES = 8
+    WALLS = 16
+    GROUND = 32
+    FACES = 64
+
+
+_FACES = int(Group.FACES)
+
+
+class SensorWorld:
+    """A world to look at and not to touch: all that the kinematic drive needs.
+
+    Close it, or use it as a context manager.
+
+    Args:
+        obstacles: All obstacles, already validated.
+        arena: The rectangle, with or without walls.
+        engine: An engine to build in, emptied first; by default a new one that is owned.
+
+    Attributes:
+        obstacles: What it was built of.
+        arena: Likewise.
+        field: The exact geometry of all obstacles and walls.
+    """
+
+    def __init__(
+        self,
+        obstacles: Sequence[Cylinder | Box],
+        arena: Arena,
+        *,
+        engine: Engine | None = None,
+    ) -> None:
+        self.obstacles, self.arena = tuple(obstacles), arena
+        self.field = Field.of(obstacles, arena)
+        self._owns_engine = engine is None
+        self.engine = engine or Engine()
+        self.engine.reset()
+        self._api = self.engine.api
+        self._build(obstacles, arena)
+
+    def cast(self, starts: Sequence[Point], ends: Sequence[Point]) -> list[float]:
+        """Cast rays against the faces of everything; they must be level, at ``BODY_HEIGHT``.
+
+        Args:
+            starts: Where they start (m).
+            ends: Where they end at the latest (m), as many, at most 16384.
+
+        Returns:
+            The part of each ray that is free, in [0, 1]; 1 where it meets nothing.
+        """
+        hits = self._api.rayTestBatch(
+            starts, ends, collisionFilterMask=_FACES, physicsClientId=self.engine.client
+        )
+        return list(map(_FRACTION, hits))
+
+    def close(self) -> None:
+        """Free the engine if it was made here."""
+        if self._owns_engine:
+            self.engine.close()
+
+    def __enter__(self: _Self) -> _Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _build(self, obstacles: Sequence[Cylinder | Box], arena: Arena) -> None:
+        """Put all that is to be there into the engine."""
+        for mesh in meshes(obstacles, arena):
+            self._group(self._build_faces(*mesh), -1, Group.FACES, Group.RAYS)
+
+    def _group(self, body: int, link: int, group: Group, mask: Group) -> None:
+        """Say what a link of a body belongs to, and what it meets."""
+        self._api.setCollisionFilterGroupMask(
+            body, link, int(group), int(mask), physicsClientId=self.engine.client
+        )
+
+    def _build_faces(self, vertices: list[list[float]], triangles: list[int]) -> int:
+        client = self.engine.client
+        shape = self._api.createCollisionShape(
+            self._api.GEOM_MESH,
+            vertices=vertices,
+            indices=triangles,
+            flags=self._api.GEOM_FORCE_CONCAVE_TRIMESH,
+            physicsClientId=client,
+        )
+        # PyBullet never lets go of the two lists. Emptied, they cost a fifth of the megabyte that
+        # every world of a long training would otherwise leave behind.
+        for vertex in vertices:
+            vertex.clear()
+        vertices.clear()
+        triangles.clear()
+        body: int = self._api.createMultiBody(
+            0.0, shape, basePosition=(0.0, 0.0, BODY_HEIGHT), physicsClientId=client
+        )
+        return body

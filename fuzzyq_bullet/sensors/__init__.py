@@ -1,0 +1,22 @@
+"""Range sensors: what the robot can learn of what stands around it, and how truly."""
+
+from fuzzyq_bullet.sensors.base import (
+    SENSORS,
+    AnySensor,
+    ExactSensor,
+    SensorModel,
+    register_sensor,
+)
+from fuzzyq_bullet.sensors.corridor import SENSOR_MARGIN, SENSOR_RANGE, SPREAD, CorridorSensor
+
+__all__ = [
+    "SENSORS",
+    "SENSOR_MARGIN",
+    "SENSOR_RANGE",
+    "SPREAD",
+    "AnySensor",
+    "CorridorSensor",
+    "ExactSensor",
+    "SensorModel",
+    "register_sensor",
+]

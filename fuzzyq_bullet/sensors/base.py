@@ -1,0 +1,97 @@
+"""Sensor models by name: what a sensor tells of the lengths that its rays really have."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict
+
+from fuzzyq_bullet.errors import SensorError
+from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.wording import error_in_words
+
+Floats: TypeAlias = NDArray[np.float64]
+
+
+class SensorModel(BaseModel):
+    """What a scenario file says of the sensor, and what the sensor makes of it.
+
+    A sensor of your own is a subclass with a name and a method ``measure``, made known by
+    ``register_sensor``. Its other fields are keys of ``sensor`` in the scenario file. Every ray
+    goes through ``measure``: those of the detection lines, and single rays.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    model: str
+
+    def measure(self, lengths: Floats, rng: np.random.Generator) -> Floats:
+        """Return what the sensor tells of rays.
+
+        Args:
+            lengths: For each ray the distance (m) from where it begins to what it meets, infinite
+                where it meets nothing; shape (N,).
+            rng: The sensor's own random numbers, the same for the same seed of the scenario.
+
+        Returns:
+            The same as measured, shape (N,); at least 0 or infinite.
+        """
+        raise NotImplementedError
+
+    def measured(self, lengths: Floats, rng: np.random.Generator) -> Floats:
+        """Return what ``measure`` does, once it is sure that these are lengths.
+
+        Raises:
+            SensorError: If it raises, or they are not.
+        """
+        try:
+            told = self.measure(lengths, rng)
+        except Exception as error:  # of a sensor of the user's own
+            raise SensorError(f"sensor {self.model}: stopped by {error_in_words(error)}") from error
+        if np.shape(told) != lengths.shape or not np.min(told) >= 0.0:
+            raise SensorError(
+                f"sensor {self.model}: measure must return {lengths.size} lengths of at least 0"
+            )
+        return told
+
+
+_M = TypeVar("_M", bound=type[SensorModel])
+
+SENSORS: ModelRegistry[SensorModel] = ModelRegistry("model", default="exact")
+
+AnySensor: TypeAlias = Annotated[SensorModel, SENSORS]
+"""What the key ``sensor`` of a scenario file holds: any of the registered models."""
+
+
+def register_sensor(sensor: _M) -> _M:
+    """Make a sensor model known by its name, so that scenario files may ask for it.
+
+    As a decorator, in a file that ``--plugin FILE`` names::
+
+        @register_sensor
+        class Rounded(SensorModel):
+            model: Literal["rounded"] = "rounded"
+            step: float = 0.05
+
+            def measure(self, lengths, rng):
+                return np.floor(lengths / self.step) * self.step
+
+    A scenario file then has ``sensor: {model: rounded, step: 0.1}``.
+
+    Raises:
+        ValueError: If it has no name, or the name is taken.
+    """
+    SENSORS.add(sensor)
+    return sensor
+
+
+@register_sensor
+class ExactSensor(SensorModel):
+    """Tells every length as it is."""
+
+    model: Literal["exact"] = "exact"
+
+    def measure(self, lengths: Floats, rng: np.random.Generator) -> Floats:  # noqa: D102
+        return lengths
