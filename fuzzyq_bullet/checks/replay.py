@@ -6,11 +6,7 @@ import shlex
 from collections.abc import Sequence
 
 from fuzzyq_bullet.checks.verdict import Job
-
-TIMEOUT = 120.0
-"""Wall-clock time (s) that one scenario may take, where nothing else is said."""
-MEMORY_MB = 2048
-"""Memory that one worker may use (MB), where nothing else is said."""
+from fuzzyq_bullet.workers.pool import MEMORY_MB, TIMEOUT
 
 
 def replay_command(job: Job, plugins: Sequence[str] = ()) -> str:

@@ -22,8 +22,8 @@ from fuzzyq_bullet.errors import UserError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from fuzzyq_bullet.checks.crew import Crew
     from fuzzyq_bullet.checks.verdict import Verdict
+    from fuzzyq_bullet.workers import WorkerPool
 
 
 class Video(str, Enum):
@@ -88,8 +88,8 @@ def check(
         UserError: If an option is wrong, or there is no scenario.
     """
     from fuzzyq_bullet.checks.collect import find
-    from fuzzyq_bullet.checks.crew import Crew
     from fuzzyq_bullet.checks.github import harmless, problem_command
+    from fuzzyq_bullet.checks.jobs import check_all
     from fuzzyq_bullet.checks.junit import junit_xml
     from fuzzyq_bullet.checks.plan import Plan, planned
     from fuzzyq_bullet.checks.record import Records, records_beside
@@ -99,7 +99,7 @@ def check(
     from fuzzyq_bullet.cli.process import say_error
     from fuzzyq_bullet.files import refuse_inputs, writable_files, writable_folder, write_text
     from fuzzyq_bullet.outputs import plugin_inputs
-    from fuzzyq_bullet.platforms import cores
+    from fuzzyq_bullet.workers import WorkerPool
 
     if record and strict:
         raise UserError("--record and --strict exclude each other: one notes, the other compares")
@@ -137,9 +137,9 @@ def check(
                 _put_away(verdict, None if _is_dropped(verdict, video) else out, replace=replace)
             show(verdict)
 
-        with Crew(jobs or cores(), plugins=plugin or [], timeout=timeout, memory_mb=memory) as crew:
-            verdicts = _settled(crew.check(plan.jobs), settle)
-            _make_films(crew, verdicts, say)
+        with WorkerPool(jobs, plugins=plugin or [], timeout=timeout, memory_mb=memory) as pool:
+            verdicts = _settled(check_all(pool, plan.jobs), settle)
+            _make_films(pool, verdicts, say)
     if record:
         for path in records.write(verdicts):
             say(f"recorded in {path}")
@@ -269,8 +269,9 @@ def _refuse_bundled(paths: Sequence[str]) -> None:
             )
 
 
-def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None]) -> None:
+def _make_films(pool: WorkerPool, verdicts: list[Verdict], say: Callable[[str], None]) -> None:
     """Make the films of all runs whose record was kept; a film that fails changes no verdict."""
+    from fuzzyq_bullet.checks.jobs import film_all
     from fuzzyq_bullet.checks.verdict import FilmJob
 
     kept = [verdict for verdict in verdicts if verdict.record]
@@ -280,7 +281,7 @@ def _make_films(crew: Crew, verdicts: list[Verdict], say: Callable[[str], None])
         )
         for verdict in kept
     ]
-    for i, why in crew.film(films):
+    for i, why in film_all(pool, films):
         if why:
             kept[i].no_film = why
             say(f"no film {films[i].video}: {why}")

@@ -9,7 +9,7 @@ import typer
 
 def _load(names: list[str] | None) -> list[str] | None:
     """Import the modules while the command line is read, before anything else is done."""
-    from fuzzyq_bullet.checks.plugins import load_plugins
+    from fuzzyq_bullet.plugins import load_plugins
 
     load_plugins(names or [])
     return names
