@@ -23,8 +23,8 @@ from fuzzyq_bullet.studies import FieldsPlan, Plan, described, planners_of
 from fuzzyq_bullet.studies.escape.study import Escape
 from fuzzyq_bullet.studies.learning.study import ComparisonPlan
 from fuzzyq_bullet.studies.learning.table import LEARNED
+from fuzzyq_bullet.studies.report.films import picked
 from fuzzyq_bullet.studies.report.markup import Html, join, tag
-from fuzzyq_bullet.studies.report.pick import picked
 from fuzzyq_bullet.studies.runner.jobs import Environment
 from fuzzyq_bullet.studies.runner.rows import Row, as_csv, from_csv
 from fuzzyq_bullet.studies.runner.storage import Folder

@@ -26,7 +26,7 @@ from fuzzyq_bullet.studies.statistics import share
 from fuzzyq_bullet.studies.steps.study import Steps, contenders, roles
 from fuzzyq_bullet.studies.steps.table import PAPER_STEPS
 from fuzzyq_bullet.studies.steps.table import summary_of as steps_of
-from fuzzyq_bullet.studies.success.picture import LOOKS, picture
+from fuzzyq_bullet.studies.success.picture import LOOKS, success_picture
 from fuzzyq_bullet.studies.success.study import COUNTS, RUNS, Success
 from fuzzyq_bullet.studies.success.table import summary_of
 
@@ -149,7 +149,7 @@ def test_orders_of_the_paper_that_are_not_seen_are_named() -> None:
 
 def test_the_picture_tells_planners_apart_without_colour_and_shows_every_share() -> None:
     summary = summary_of(rows_by(lambda name, count, run: run * len(name) > count))
-    figure = picture(summary, "made by hand")
+    figure = success_picture(summary, "made by hand")
     above, below = figure.axes
     assert len({look.mark for look in LOOKS.values()}) == len(PAPER)
     assert len({look.colour for look in LOOKS.values()}) == len(PAPER)

@@ -41,7 +41,8 @@ class DaskPool:
             return []
 
         try:
-            finished = as_completed([one for _ in range(self._workers) for one in submit()])
+            first = [one for _ in range(self._workers) for one in submit()]
+            finished = as_completed(first, loop=self._client.loop)
             for future in finished:
                 try:
                     answer = Answer(future.result())

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
-from matplotlib.figure import Figure
 from pydantic import Field, ValidationError
 
 from fuzzyq_bullet.errors import UserError
@@ -20,7 +19,7 @@ from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.planning.weighing import EXPECTED
 from fuzzyq_bullet.scenario import Drive, Limits
-from fuzzyq_bullet.studies.learning.table import LEARNED, Summary, summary_of, time_ratios
+from fuzzyq_bullet.studies.learning.table import LEARNED, summary_of, time_ratios
 from fuzzyq_bullet.studies.learning.tables import tables_of
 from fuzzyq_bullet.studies.options import counts_of, one_drive_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
@@ -188,6 +187,8 @@ class Learning(Study):
 
     def findings(self, results: Results) -> Findings:
         """Return what learning gains, with its intervals."""
+        from fuzzyq_bullet.studies.learning.picture import picture
+
         found, plan = results["grid"].plan, results["comparison"].plan
         rows = results["comparison"].rows
         choices = _choices(results["grid"])
@@ -222,19 +223,13 @@ class Learning(Study):
             f"What learning gains: {plan.drive}, {summary.feasible} environments that no training "
             "saw"
         )
-        picture = Picture(
-            lambda: _picture(summary, time_ratios(rows, roles["best pair"]), title),
+        shown = Picture(
+            lambda: picture(summary, time_ratios(rows, roles["best pair"]), title),
             "Time of the learned planner over that of the best fixed pair in each environment, "
             "and the intervals of all comparisons; the tables have the figures.",
         )
         missed = tuple(str(one) for one in summary.targets if not one.met)
-        return Findings(tables_of(summary, about), data, missed=missed, pictures=(picture,))
-
-
-def _picture(summary: Summary, ratios: Mapping[int, list[float]], title: str) -> Figure:
-    from fuzzyq_bullet.studies.learning.picture import picture
-
-    return picture(summary, ratios, title)
+        return Findings(tables_of(summary, about), data, missed=missed, pictures=(shown,))
 
 
 def _choices(tried: Swept) -> dict[str, Choice]:

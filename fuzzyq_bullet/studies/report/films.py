@@ -1,12 +1,14 @@
-"""What takes time in a report, done by worker processes: runs made again and filmed, and figures.
+"""The runs of a report that are worth watching, made again and filmed; and the paper's figures.
 
-The films are small and short, and each is held to the digest of its row.
+Both take time, and are made by worker processes. The films are small and short, and each is held
+to the digest of its row.
 """
 
 from __future__ import annotations
 
+import math
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -20,13 +22,19 @@ from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import Limits, realise
 from fuzzyq_bullet.studies.report.found import Found
-from fuzzyq_bullet.studies.report.pick import picked
 from fuzzyq_bullet.studies.runner.jobs import Environment, Job
 from fuzzyq_bullet.studies.runner.rows import Row
 from fuzzyq_bullet.studies.runner.sweep import local_pool
 from fuzzyq_bullet.studies.success.measures import by_planner
 from fuzzyq_bullet.video import frame, record
 
+RULE = (
+    "All runs of a planner that have a row without an error, in this order: first those that "
+    "reached the goal, by the time they took over that of the shortest path at full speed; then "
+    "those that failed where there is no way for a disc of radius 0.22 m; last those that failed "
+    "although there is one, by their time. Best is the first, median the one in the middle, worst "
+    "the last: a failure, if there is one."
+)
 LONGEST = 12.0
 """How long a film may play (s), where the greatest speed there is allows it."""
 SPEEDS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100)
@@ -94,6 +102,45 @@ def wanted_films(found: Sequence[Found]) -> dict[Place, Wanted]:
         for name in by_planner(swept.rows)
         for role, row in picked(swept.rows, name).items()
     }
+
+
+def picked(rows: Iterable[Row], planner: str) -> dict[str, Row]:
+    """Return a planner's best, median and worst run; what is the same run is one entry.
+
+    Returns:
+        Runs by what they are, such as ``best`` or ``median and worst``; empty without any run.
+    """
+    runs = [row for row in rows if row.planner == planner and row.outcome != "error"]
+    runs.sort(key=_rank)
+    if not runs:
+        return {}
+    places = {"best": 0, "median": (len(runs) - 1) // 2, "worst": len(runs) - 1}
+    roles: dict[int, list[str]] = {}
+    for role, place in places.items():
+        roles.setdefault(place, []).append(role)
+    return {_listed(names): runs[place] for place, names in roles.items()}
+
+
+def _pace(row: Row) -> float | None:
+    """Return the time of a run in times of the shortest path at 1 m/s; None without such a path.
+
+    The robot's greatest speed is the same in all runs, so the order is that of the true ratio.
+    """
+    if row.time_s is None or not row.shortest_path_m:
+        return None
+    return row.time_s / row.shortest_path_m
+
+
+def _rank(row: Row) -> tuple[object, ...]:
+    time = row.time_s or 0.0
+    if row.success:
+        ratio = _pace(row)
+        return 0, math.inf if ratio is None else ratio, time, row.key
+    return 1 if row.feasible is False else 2, 0.0, time, row.key
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def make(

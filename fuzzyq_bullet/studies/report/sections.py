@@ -12,10 +12,9 @@ from importlib import metadata
 from pathlib import Path
 
 from fuzzyq_bullet.platforms import pybullet_in_words
-from fuzzyq_bullet.studies.report.films import SIZE, Film
+from fuzzyq_bullet.studies.report.films import RULE, SIZE, Film
 from fuzzyq_bullet.studies.report.found import Found
 from fuzzyq_bullet.studies.report.markup import Child, Html, data_uri, join, tag
-from fuzzyq_bullet.studies.report.pick import RULE
 from fuzzyq_bullet.studies.study import Findings, Picture, Study, Swept, Table
 from fuzzyq_bullet.version import __version__
 

@@ -28,7 +28,7 @@ class Row(BaseModel):
         count: Number of obstacles asked for; None for layouts without a count.
         run: Number of the environment.
         seed: Seed of the scenario.
-        feasible: Whether there is a way for a disc of radius ``ROOM`` (``sweep.episode``); None
+        feasible: Whether there is a way for a disc of radius ``ROOM`` (``runner.sweep``); None
             where the environment could not be built.
         outcome: As in results, or ``error`` where the episode failed itself.
         steps: As in results; so are the following, all None after an error.

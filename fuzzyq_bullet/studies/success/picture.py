@@ -1,4 +1,4 @@
-"""Fig. 13 as a picture: success by the number of obstacles, over all and over the feasible.
+"""Fig. 13 as a picture, success by the number of obstacles; and path, time and clearance beside it.
 
 For print: dark on white, in Okabe and Ito's palette, which the colour-blind tell apart. Marks and
 dashes differ too, so that it can be read in grey, and planners stand side by side where they meet.
@@ -13,11 +13,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, Locator, MaxNLocator, PercentFormatter
 
+from fuzzyq_bullet.studies.success.measures import MEASURES, by_planner, measures_of
+
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from matplotlib.axes import Axes
 
+    from fuzzyq_bullet.studies.runner.rows import Row
     from fuzzyq_bullet.studies.statistics import Share
     from fuzzyq_bullet.studies.success.table import Line, Summary
 
@@ -58,7 +61,7 @@ _SPREAD = 0.55
 fifth of their range if that is less."""
 
 
-def picture(summary: Summary, title: str) -> Figure:
+def success_picture(summary: Summary, title: str) -> Figure:
     """Return the figure: above over all environments, below over those that have a way."""
     figure = Figure(figsize=(11.0, 8.6), dpi=120, layout="constrained")
     FigureCanvasAgg(figure)
@@ -81,7 +84,7 @@ def picture(summary: Summary, title: str) -> Figure:
     above.set_title("of all environments", loc="left", fontsize=11, color=INK)
     below.set_title("of the environments that have a way", loc="left", fontsize=11, color=INK)
     below.set_xlabel("obstacles", fontsize=11)
-    below.xaxis.set_major_locator(ticks_of(counts))
+    below.xaxis.set_major_locator(_ticks_of(counts))
     figure.supylabel("goal reached, with Wilson's 95 % intervals", fontsize=11, color=INK)
     figure.legend(
         *above.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
@@ -90,19 +93,58 @@ def picture(summary: Summary, title: str) -> Figure:
     return figure
 
 
-def looks_of(planners: Collection[str]) -> list[Look]:
+def measures_picture(rows: Sequence[Row], title: str) -> Figure:
+    """Return the figure: median and middle half over the runs that reached the goal."""
+    figure = Figure(figsize=(11.0, 11.5), dpi=100, layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle(title, fontsize=13, weight="bold", color=INK)
+    panels = figure.subplots(len(MEASURES), 1, sharex=True)
+    table = by_planner(rows)
+    counts = np.array(sorted({row.count or 0 for row in rows}))
+    for axes, (what, figure_of) in zip(panels, MEASURES.items(), strict=True):
+        for name, look, offset in zip(table, _looks_of(table), _beside(counts, table), strict=True):
+            found = [
+                (count + offset, one)
+                for count in counts
+                if (one := figure_of(measures_of(r for r in table[name] if r.count == count)))
+            ]
+            x = [place for place, _ in found]
+            y = [one.middle for _, one in found]
+            off = [
+                [one.middle - one.low for _, one in found],
+                [one.high - one.middle for _, one in found],
+            ]
+            axes.errorbar(
+                x, y, off, fmt=look.mark, ls=look.dashes, lw=1.6, ms=5.5, color=look.colour,
+                mec="white", mew=0.5, elinewidth=1.0, capsize=1.8, label=name,
+            )  # fmt: skip
+        axes.set_title(what, loc="left", fontsize=11, color=INK)
+        axes.grid(axis="y", color=GRID, lw=0.8)
+        axes.set_axisbelow(True)
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+    panels[-1].set_xlabel("obstacles", fontsize=11)
+    panels[-1].xaxis.set_major_locator(_ticks_of(counts))
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
+        frameon=False, handlelength=3.2,
+    )  # fmt: skip
+    return figure
+
+
+def _looks_of(planners: Collection[str]) -> list[Look]:
     """Return how each planner is drawn; those that the paper does not have take turns."""
     others = iter(_OTHERS * len(planners))
     return [LOOKS.get(name) or next(others) for name in planners]
 
 
-def ticks_of(counts: Counts) -> Locator:
+def _ticks_of(counts: Counts) -> Locator:
     """Return where the axis of obstacles is marked: at the counts, where they are not too many."""
     few = counts.size <= MOST_TICKS
     return FixedLocator(counts.tolist()) if few else MaxNLocator("auto", integer=True)
 
 
-def beside(counts: Counts, planners: Collection[str]) -> list[float]:
+def _beside(counts: Counts, planners: Collection[str]) -> list[float]:
     """Return how far beside a count each planner stands, so that none hides another."""
     gap = float(min(np.diff(counts).min(), np.ptp(counts) / 5)) if counts.size > 1 else 1.0
     width = 0.5 * _SPREAD * gap
@@ -112,7 +154,7 @@ def beside(counts: Counts, planners: Collection[str]) -> list[float]:
 
 def _planners(axes: Axes, summary: Summary, counts: Counts, feasible: bool) -> None:
     """Draw a line for each planner, each a little beside the others."""
-    looks, offsets = looks_of(summary.planners), beside(counts, summary.planners)
+    looks, offsets = _looks_of(summary.planners), _beside(counts, summary.planners)
     for name, look, offset in zip(summary.planners, looks, offsets, strict=True):
         found = [
             (count + offset, one)

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any, ClassVar
 
-from matplotlib.figure import Figure
 from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
@@ -98,6 +97,8 @@ class Success(Study):
 
     def findings(self, results: Results) -> Findings:
         """Return success with its intervals, and what the runs that arrived have in common."""
+        from fuzzyq_bullet.studies.success.picture import measures_picture, success_picture
+
         swept = results[self.name]
         plan: FieldsPlan = swept.plan
         rows = swept.rows
@@ -111,14 +112,14 @@ class Success(Study):
             remarks=(*_ends(summary.total), *_claims(summary)),
             pictures=(
                 Picture(
-                    lambda: _success_picture(summary, title),
+                    lambda: success_picture(summary, title),
                     f"Success of each planner by the number of obstacles, {plan.drive}. "
                     + "; ".join(_in_words(summary, name) for name in summary.planners),
                     "Fig. 13 with Wilson's 95 % intervals: above over all environments, below over "
                     "those that have a way. The tables hold the same figures.",
                 ),
                 Picture(
-                    lambda: _measures_picture(rows, f"Runs that reached the goal: {about}"),
+                    lambda: measures_picture(rows, f"Runs that reached the goal: {about}"),
                     "Driven over shortest path, time to the goal and least distance to anything of "
                     "each planner by the number of obstacles; the table has them over all.",
                     "Median and middle half over the runs that reached the goal. A planner that "
@@ -128,18 +129,6 @@ class Success(Study):
             headline=_headline(summary, plan.drive),
             details=_measures(rows),
         )
-
-
-def _success_picture(summary: Summary, title: str) -> Figure:
-    from fuzzyq_bullet.studies.success.picture import picture
-
-    return picture(summary, title)
-
-
-def _measures_picture(rows: Sequence[Row], title: str) -> Figure:
-    from fuzzyq_bullet.studies.success.measures_picture import picture
-
-    return picture(rows, title)
 
 
 def _tables(summary: Summary, about: str, steps: int) -> tuple[Table, Table]:
