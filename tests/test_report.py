@@ -415,6 +415,7 @@ DAMAGED_SETTINGS = [
     ("escape", {"planner": {"name": 3}}),
     ("escape", {"drives": []}),
     ("escape", {"runs": -1}),
+    ("escape", {"runs": 0, "counts": [], "traps": 0}),
     ("success", {"planners": {"fixed-1-1": {"name": "improved-fuzzy"}}}),
     ("success", {"planners": {"fuzzy": {"name": "fuzzy", "weights": {"a": 1}}}}),
     ("success", {"counts": [-5]}),

@@ -134,7 +134,8 @@ class Study(BaseModel):
     * ``findings`` returns what the rows say: tables, and data for programs.
 
     A study of several sweeps, each planned by what came of those before, overrides ``stages``
-    instead of ``plan`` and ``planner_set``, and has an entry in ``kinds`` and ``folders`` for each.
+    instead of ``plan`` and ``planner_set``, and has an entry in ``kinds`` and ``folders`` for each;
+    ``recalled`` then tells a report how to get from the plans back to the options.
 
     Attributes:
         name: What the command line and the files call it.
@@ -203,7 +204,7 @@ class Study(BaseModel):
         Returns:
             None if one is missing without which there is nothing to be found.
         """
-        (plan,) = plans.values()
+        *_, plan = plans.values()
         told = plan.described()
         if "counts" in told:
             told["counts"] = numbers(told["counts"])

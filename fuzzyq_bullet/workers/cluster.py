@@ -80,7 +80,8 @@ def cluster(address: str, jobs: int | None) -> Iterator[Pool]:
             "--backend dask: Dask is not installed: pip install 'fuzzyq_bullet[cluster]'"
         ) from error
     # What befalls it is told by the errors below, in one line.
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in ("distributed", "distributed.client"):  # which has a level of its own
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         get_backend(parse_address(address)[0])  # else a client that never was complains at its end
         client = Client(address, timeout=PATIENCE, set_as_default=False)

@@ -164,7 +164,9 @@ class WorkerPool:
         try:
             while waiting or any(worker.order is not None for worker in self._workers):
                 self._hand_out(waiting)
-                yield from self._collect()
+                for finished in self._collect():
+                    self._hand_out(waiting)  # before whoever listens takes its time
+                    yield finished
         finally:  # whoever stops listening leaves no worker with half an answer
             for busy in [one for one in self._workers if one.order is not None]:
                 self._dismiss(busy)

@@ -101,8 +101,8 @@ class Escape(Study):
     """Run a planner in random fields, traps and rectangles; print how often it finds its way.
 
     May be ended at any moment: the same command goes on where it was. Writes escape.csv, a row for
-    every episode, and in records/ those that failed although there was a way, for fuzzyq replay.
-    Exit code 1 when a target is missed.
+    every episode, escape.json, and in records/ the runs that failed although there was a way, for
+    fuzzyq replay. Exit code 1 when a target is missed.
     """
 
     name: ClassVar[str] = "escape"

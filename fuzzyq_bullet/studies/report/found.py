@@ -73,9 +73,24 @@ def studies_below(folder: Path) -> list[Found]:
 
 
 def _recalled(home: Path, kind: type[Study], results: dict[str, Swept]) -> Found:
+    """Return results with their study.
+
+    Raises:
+        UserError: If their settings are none that it would have had.
+    """
     in_order = {name: results[name] for name in kind.stage_kinds() if name in results}
-    study = kind.recalled({name: swept.plan for name, swept in in_order.items()})
+    try:
+        study = kind.recalled({name: swept.plan for name, swept in in_order.items()})
+    except ValidationError as error:
+        *_, last = in_order.values()
+        raise _damaged(last.folder / "settings.json", error) from error
     return Found(home, kind, in_order, study)
+
+
+def _damaged(path: Path, error: ValidationError) -> UserError:
+    first = error.errors(include_url=False)[0]
+    where = ".".join(map(str, first["loc"]))
+    return UserError(f"{path}: is damaged: {where}: {first['msg']}")
 
 
 def _folders(folder: Path, depth: int) -> Iterator[Path]:
@@ -106,9 +121,7 @@ def _read(folder: Path) -> tuple[str, str, Swept] | None:
     try:
         plan = kind.model_validate(told)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        raise UserError(f"{path}: is damaged: {where}: {first['msg']}") from error
+        raise _damaged(path, error) from error
     table = folder / f"{stage}.csv"
     finished = os.path.lexists(table)
     if finished:
