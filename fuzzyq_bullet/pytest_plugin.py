@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.checks.crew import Crew
     from fuzzyq_bullet.checks.inline import ScenarioRun
+    from fuzzyq_bullet.workers import WorkerPool
 
 ENDINGS = (".scenario.yaml", ".scenario.yml")
 IN_FOLDERS = (".yaml", ".yml")
 
 _folders = pytest.StashKey[list[Path]]()
-_crew = pytest.StashKey["Crew"]()
+_pool = pytest.StashKey["WorkerPool"]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -56,9 +56,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_unconfigure(config: pytest.Config) -> None:
     """End the worker process, if there was one."""
-    crew = config.stash.get(_crew, None)
-    if crew is not None:
-        crew.close()
+    pool = config.stash.get(_pool, None)
+    if pool is not None:
+        pool.close()
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
@@ -129,6 +129,7 @@ class ScenarioItem(pytest.Item):
         Raises:
             ScenarioFailedError: If it did not do what it expects, or could not be run.
         """
+        from fuzzyq_bullet.checks.jobs import check_all
         from fuzzyq_bullet.checks.plan import refuse_dead_link
         from fuzzyq_bullet.checks.text import explanation
         from fuzzyq_bullet.checks.verdict import Job
@@ -141,7 +142,7 @@ class ScenarioItem(pytest.Item):
         job = Job(file=file, name=self.name, again=again)
         try:
             refuse_dead_link(self.path)
-            ((_, verdict),) = _crew_of(self.config).check([job])
+            ((_, verdict),) = check_all(_pool_of(self.config), [job])
         except UserError as error:
             problem = str(error).replace("--plugin:", "fuzzyq_plugins:")
             raise ScenarioFailedError(problem) from None
@@ -163,15 +164,15 @@ class ScenarioFailedError(Exception):
     """Why a scenario failed, in lines for people."""
 
 
-def _crew_of(config: pytest.Config) -> Crew:
+def _pool_of(config: pytest.Config) -> WorkerPool:
     """Return the worker process of this session; with pytest-xdist each of its processes has one.
 
     Raises:
         UserError: If the time limit in the configuration is no number.
     """
-    if _crew not in config.stash:
-        from fuzzyq_bullet.checks.crew import Crew
+    if _pool not in config.stash:
         from fuzzyq_bullet.errors import UserError
+        from fuzzyq_bullet.workers import WorkerPool
 
         given = str(config.getini("fuzzyq_timeout"))
         try:
@@ -180,8 +181,8 @@ def _crew_of(config: pytest.Config) -> Crew:
             timeout = 0.0
         if not 0.0 < timeout <= 86400.0:
             raise UserError(f"fuzzyq_timeout: must be seconds, more than 0, got {given!r}")
-        config.stash[_crew] = Crew(1, plugins=_plugins(config), timeout=timeout)
-    return config.stash[_crew]
+        config.stash[_pool] = WorkerPool(1, plugins=_plugins(config), timeout=timeout)
+    return config.stash[_pool]
 
 
 def _plugins(config: pytest.Config) -> list[str]:

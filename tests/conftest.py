@@ -6,23 +6,25 @@ import contextlib
 import io
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import hypothesis
 import pytest
 
 from fuzzyq_bullet.cli import app
+from fuzzyq_bullet.workers import Answer, WorkerPool
 
 # How long an example takes is the machine's affair: no test asserts a time.
 hypothesis.settings.register_profile("fuzzyq", deadline=None, max_examples=50)
 hypothesis.settings.load_profile("fuzzyq")
 
 SLOW = (
-    *("check", "cli_interrupt", "cli_train", "cluster", "exploration", "escape_table"),
-    *("figure_panels", "gym", "layouts", "learned_weights", "learning_gain", "learning_training"),
-    *("oracle", "package", "pythons", "report", "success", "sweep", "video", "video_picture"),
+    *("check", "cli_interrupt", "cli_train", "cluster", "escape_table", "exploration"),
+    *("extend_study", "figure_panels", "gym", "layouts", "learned_weights", "learning_gain"),
+    *("learning_training", "oracle", "package", "pythons", "report", "success", "sweep", "video"),
+    "video_picture",
 )
 """Modules of tests that take long: ``-m "not slow"`` leaves them out."""
 
@@ -99,3 +101,27 @@ def filmed(fuzzyq: Call, short: Path, tmp_path_factory: pytest.TempPathFactory) 
     (folder / "stdout").write_text(done.stdout)
     (folder / "stderr").write_text(done.stderr)
     return folder
+
+
+class Here:
+    """A pool that does all work in this process, one order after the other."""
+
+    def run(
+        self, function: Callable[[Any], Any], arguments: Sequence[Any], **_: object
+    ) -> Iterator[tuple[int, Answer]]:
+        for i, argument in enumerate(arguments):
+            yield i, Answer(function(argument))
+
+
+@pytest.fixture(scope="session")
+def here() -> Here:
+    """A pool without workers, which need a second or two to start."""
+    return Here()
+
+
+@contextlib.contextmanager
+def no_workers() -> Iterator[None]:
+    """Let commands do in this process what workers are for."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(WorkerPool, "run", Here.run)
+        yield

@@ -18,13 +18,14 @@ from conftest import Call
 from lxml import etree
 
 from fuzzyq_bullet.checks.baseline import BaselineRun, compare, this_platform
-from fuzzyq_bullet.checks.crew import Crew
+from fuzzyq_bullet.checks.jobs import check_all
 from fuzzyq_bullet.checks.plan import discover
 from fuzzyq_bullet.checks.reports import junit_xml
 from fuzzyq_bullet.checks.verdict import Job, Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.resources import data_folder
 from fuzzyq_bullet.trajectory import Trajectory
+from fuzzyq_bullet.workers import WorkerPool
 
 PLANNERS = '''\
 """What breaks robots, for tests: each by the name of a planner."""
@@ -252,8 +253,8 @@ def test_a_hang_is_cut_and_the_next_goes_on(folder: Path) -> None:
     files = (folder / "hang.yaml", folder / "fields" / "straight.yaml")
     record = str(folder / "hang.npz")
     jobs = [Job(file=str(file), name=file.stem, record=record, keep="all") for file in files]
-    with Crew(1, plugins=[str(folder / "planners.py")], timeout=4.0) as crew:
-        done = dict(crew.check(jobs))
+    with WorkerPool(1, plugins=[str(folder / "planners.py")], timeout=4.0) as pool:
+        done = dict(check_all(pool, jobs))
     assert done[0].status == "broken"
     assert done[0].why[0].startswith("cut after 4 s of wall-clock time")
     assert done[0].no_film
@@ -268,13 +269,13 @@ def test_a_worker_that_dies_while_it_starts_is_replaced(folder: Path, tmp_path: 
         "if not lives.exists():\n    lives.touch()\n    os.abort()\n"
     )
     job = Job(file=str(folder / "fields" / "good.yaml"), name="good", drive="kinematic")
-    with Crew(1, plugins=[str(dying)]) as crew:
-        assert dict(crew.check([job]))[0].status == "passed"
+    with WorkerPool(1, plugins=[str(dying)]) as pool:
+        assert dict(check_all(pool, [job]))[0].status == "passed"
     (tmp_path / "lives").unlink()
     dying.write_text("import os\nos._exit(7)\n")
     told = "no worker process can be started: its process ended by itself, with exit code 7"
-    with Crew(1, plugins=[str(dying)]) as crew, pytest.raises(UserError, match=told):
-        dict(crew.check([job]))
+    with WorkerPool(1, plugins=[str(dying)]) as pool, pytest.raises(UserError, match=told):
+        dict(check_all(pool, [job]))
 
 
 # Written after Ant's and Jenkins' schemas: what both allow, as far as check writes it.

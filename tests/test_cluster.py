@@ -14,7 +14,7 @@ import pytest
 from conftest import Call
 
 from fuzzyq_bullet import UserError
-from fuzzyq_bullet.experiments.sweep.cluster import cluster
+from fuzzyq_bullet.workers.cluster import cluster
 
 pytest.importorskip("distributed", reason="needs the extra cluster")
 

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from fuzzyq_bullet.experiments.escape.plan import TRAPS, Plan
-from fuzzyq_bullet.experiments.escape.table import Line, table_of
-from fuzzyq_bullet.experiments.sweep.rows import Row
-from fuzzyq_bullet.planning import ImprovedFuzzySettings
+from fuzzyq_bullet.planning import settings_for
+from fuzzyq_bullet.studies.escape.study import EscapePlan
+from fuzzyq_bullet.studies.escape.table import TRAPS, Line, table_of
+from fuzzyq_bullet.studies.runner.rows import Row
 
 
 def row(run: int = 0, **changes: Any) -> Row:
@@ -134,8 +134,11 @@ def test_traps_are_one_family_and_lines_come_in_order() -> None:
 
 
 def test_a_plan_takes_traps_in_turn_and_every_environment_with_every_drive() -> None:
-    plan = Plan(ImprovedFuzzySettings(), runs=2, counts=(5,), traps=6, rectangles=(30,))
-    jobs = plan.jobs()
+    fuzzy = settings_for("fuzzy").model_validate({"name": "fuzzy"})
+    told = fuzzy.model_dump(mode="json")
+    plan = EscapePlan(sweep="escape", planner=told, runs=2, counts=(5,), traps=6, rectangles=(30,))
+    jobs = plan.jobs({"fuzzy": fuzzy})
+    assert len(jobs) == plan.total
     assert len(jobs) == len({job.key for job in jobs}) == 2 * (2 + 6 + 2)
     traps = [where.layout for where in plan.environments() if where.count is None]
     assert traps == [*TRAPS, *TRAPS[:2]]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from fuzzyq_bullet import load_scenario, result_of, run, with_options
 from fuzzyq_bullet.cli.figure import figure
 from fuzzyq_bullet.experiments.figures import FIGURES, panels
 from fuzzyq_bullet.experiments.figures.panels import Grid, Panel, picture, scenario_of
+from fuzzyq_bullet.experiments.figures.runs import FIGURES as RUNS
 from fuzzyq_bullet.experiments.figures.topdown import HIT, LEAVES, LEGEND, PATH, TEMPORARY, draw_run
 from fuzzyq_bullet.planning import MODES
 from fuzzyq_bullet.scenario import bundled_scenarios, realise
@@ -36,7 +36,7 @@ FAILURES = {
 
 
 def panels_of(number: int) -> tuple[Panel, ...]:
-    return import_module(f"fuzzyq_bullet.experiments.figures.figure{number}").PANELS
+    return RUNS[number].panels
 
 
 @pytest.fixture(scope="module")

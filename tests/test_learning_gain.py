@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Call
+from conftest import Call, no_workers
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console
@@ -18,7 +18,34 @@ from scipy.stats import binom
 
 from fuzzyq_bullet import UserError
 from fuzzyq_bullet.cli.app import call
-from fuzzyq_bullet.experiments.learning_gain.candidates import (
+from fuzzyq_bullet.cli.study import printed
+from fuzzyq_bullet.learning import Policy
+from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, Weights
+from fuzzyq_bullet.scenario import realise
+from fuzzyq_bullet.studies import Findings
+from fuzzyq_bullet.studies.learning.picture import picture
+from fuzzyq_bullet.studies.learning.study import MOST_SEED, ComparisonPlan, Learning, unseen
+from fuzzyq_bullet.studies.learning.table import (
+    LEARNED,
+    Against,
+    Summary,
+    Target,
+    summary_of,
+    time_ratios,
+)
+from fuzzyq_bullet.studies.learning.tables import tables_of
+from fuzzyq_bullet.studies.planner_sets import hash_of
+from fuzzyq_bullet.studies.runner.jobs import Environment
+from fuzzyq_bullet.studies.runner.rows import Row
+from fuzzyq_bullet.studies.selection import best_of, search
+from fuzzyq_bullet.studies.statistics import (
+    Estimate,
+    difference_of_shares,
+    mean_of_differences,
+    median_of_ratios,
+    ratio_of_means,
+)
+from fuzzyq_bullet.studies.weight_grid import (
     HALF,
     ONE,
     PAIRS,
@@ -26,36 +53,6 @@ from fuzzyq_bullet.experiments.learning_gain.candidates import (
     label_of,
     settings_of,
 )
-from fuzzyq_bullet.experiments.learning_gain.choice import best_of
-from fuzzyq_bullet.experiments.learning_gain.picture import picture
-from fuzzyq_bullet.experiments.learning_gain.plan import (
-    LEARNED,
-    MOST_SEED,
-    Comparison,
-    Search,
-    unseen,
-)
-from fuzzyq_bullet.experiments.learning_gain.show import WIDTH, as_tables
-from fuzzyq_bullet.experiments.learning_gain.statistics import (
-    Estimate,
-    difference_of_shares,
-    mean_of_differences,
-    median_of_ratios,
-    ratio_of_means,
-)
-from fuzzyq_bullet.experiments.learning_gain.table import (
-    Against,
-    Summary,
-    Target,
-    summary_of,
-    time_ratios,
-)
-from fuzzyq_bullet.experiments.sweep.jobs import Environment
-from fuzzyq_bullet.experiments.sweep.rows import Row
-from fuzzyq_bullet.learning import Policy
-from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, Weights
-from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
-from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.training.registry import learn, recipe_of
 from fuzzyq_bullet.training.tasks import FIRST_SEED, Tasks
 
@@ -373,21 +370,21 @@ def policy(tmp_path_factory: pytest.TempPathFactory) -> tuple[Policy, Path]:
     return made, path
 
 
-def comparison(policy: Policy, seed: int, number: int = 8) -> Comparison:
-    return Comparison(
+def comparison(policy: Policy, seed: int, number: int = 8) -> ComparisonPlan:
+    return ComparisonPlan(
+        sweep="learning comparison",
         drive="kinematic",
         seed=seed,
-        number=number,
+        environments=number,
         counts=(5, 25),
-        fixed=(HALF, ONE),
-        learned=FuzzyQLambdaSettings(),
-        policy=policy,
+        fixed=(label_of(HALF), label_of(ONE)),
+        policy=hash_of(policy),
     )
 
 
 def test_the_search_takes_place_where_the_training_did() -> None:
-    search = Search("kinematic", seed=3, episodes=3, candidates=(HALF,))
-    for episode, job in enumerate(search.jobs(), start=1):
+    stage = search("learning", "kinematic", 3, 3, (HALF,))
+    for episode, job in enumerate(stage.plan.jobs(stage.planners), start=1):
         trained_on = recipe_of("fuzzy-q-lambda").tasks("kinematic", 3).scenario_of(episode)
         ours = realise(job.scenario())
         assert ours.obstacles == trained_on.obstacles
@@ -400,9 +397,9 @@ def test_no_environment_of_the_comparison_is_one_of_a_training(
 ) -> None:
     for seed in (0, MOST_SEED):
         plan = comparison(policy[0], seed, 1000)
-        least, greatest = unseen(plan.environments)
+        least, greatest = unseen(plan.places())
         assert 0 <= least <= greatest < FIRST_SEED
-    trained_on = Search("kinematic", seed=0, episodes=2).environments
+    trained_on = [where for where, *_ in search("l", "kinematic", 0, 2, (ONE,)).plan.schedule()]
     assert min(where.seed for where in trained_on) >= FIRST_SEED
     with pytest.raises(UserError, match="for training"):
         unseen([Environment("scatter", 25, 0, 5), *trained_on])
@@ -411,12 +408,12 @@ def test_no_environment_of_the_comparison_is_one_of_a_training(
 def test_all_planners_meet_the_same_environments_with_counts_in_turn(
     policy: tuple[Policy, Path],
 ) -> None:
-    jobs = comparison(policy[0], 0, 4).jobs()
+    plan = comparison(policy[0], 0, 4)
     names = [label_of(HALF), label_of(ONE), LEARNED]
-    assert [(job.planner, job.environment.count) for job in jobs] == [
+    assert [(name, where.count) for where, name, _ in plan.schedule()] == [
         (name, count) for count in (5, 25, 5, 25) for name in names
     ]
-    assert len({job.key for job in jobs}) == len(jobs)
+    assert plan.total == len(list(plan.schedule()))
 
 
 def test_another_training_makes_another_comparison(policy: tuple[Policy, Path]) -> None:
@@ -434,11 +431,7 @@ def test_it_runs_goes_on_and_says_what_it_found(
         *("bench", "learning", "--policy", policy[1], "--drive", "kinematic", "--environments", 4),
         *("--counts", "5,10", "--grid", 1, "--jobs", 2, "--out", tmp_path),
     )
-    with pytest.MonkeyPatch.context() as patch:  # in this process: no workers need to start
-        patch.setattr(
-            "fuzzyq_bullet.experiments.sweep.workers.spread",
-            lambda jobs, work, pool, hand_out: map(work, jobs),
-        )
+    with no_workers():
         first = inside(*command, "--json")
     assert first.returncode in (0, 1), first.stderr
     told = json.loads(first.stdout)
@@ -468,7 +461,7 @@ def test_it_runs_goes_on_and_says_what_it_found(
         "comparison: 2 episodes",
     ]
     assert [path.read_bytes() for path in files] == before
-    assert max(map(len, again.stdout.splitlines())) <= WIDTH
+    assert max(map(len, again.stdout.splitlines())) <= Learning.width
 
 
 def test_the_tables_cut_nothing_off() -> None:
@@ -479,9 +472,9 @@ def test_the_tables_cut_nothing_off() -> None:
         ],
         {"0.5/0.5": label_of(SLOW), PAIR: label_of(FAST), "best triple": label_of(ACTIONS[-1])},
     )
-    console = Console(width=WIDTH)
+    console = Console(width=Learning.width)
     with console.capture() as shown:
-        console.print(as_tables(summary, "about"))
+        console.print(printed(Findings(tables_of(summary, "about"), {})))
     text = shown.get()
     assert "…" not in text
     assert "usual time ÷" in text

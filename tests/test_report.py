@@ -13,25 +13,29 @@ from pathlib import Path
 
 import pytest
 from browser import CHROMIUM, browsing
+from conftest import Here
 from PIL import Image
 
 from fuzzyq_bullet import UserError
 from fuzzyq_bullet.cli.app import call
-from fuzzyq_bullet.experiments.escape.plan import Plan as EscapePlan
-from fuzzyq_bullet.experiments.learning_gain import candidates
-from fuzzyq_bullet.experiments.learning_gain.plan import LEARNED
-from fuzzyq_bullet.experiments.report.markup import Html, join, tag
-from fuzzyq_bullet.experiments.report.measures import measures_of, met_by_all, solved_by_all
-from fuzzyq_bullet.experiments.report.pick import picked
-from fuzzyq_bullet.experiments.steps.plan import contenders
-from fuzzyq_bullet.experiments.success.episode import run_row
-from fuzzyq_bullet.experiments.success.plan import Plan
-from fuzzyq_bullet.experiments.sweep.folder import Folder
-from fuzzyq_bullet.experiments.sweep.jobs import Job
-from fuzzyq_bullet.experiments.sweep.rows import Row, as_csv, from_csv
-from fuzzyq_bullet.planning import settings_for
 from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
+from fuzzyq_bullet.studies import FieldsPlan, Plan, described, planners_of
+from fuzzyq_bullet.studies.escape.study import Escape
+from fuzzyq_bullet.studies.learning.study import ComparisonPlan
+from fuzzyq_bullet.studies.learning.table import LEARNED
+from fuzzyq_bullet.studies.report.films import picked
+from fuzzyq_bullet.studies.report.markup import Html, join, tag
+from fuzzyq_bullet.studies.runner.jobs import Environment
+from fuzzyq_bullet.studies.runner.rows import Row, as_csv, from_csv
+from fuzzyq_bullet.studies.runner.storage import Folder
+from fuzzyq_bullet.studies.runner.sweep import run_job
+from fuzzyq_bullet.studies.selection import SearchPlan
+from fuzzyq_bullet.studies.steps.study import contenders
+from fuzzyq_bullet.studies.study import met_by_all
+from fuzzyq_bullet.studies.success.measures import measures_of, solved_by_all
+from fuzzyq_bullet.studies.weight_grid import HALF, ONE, TRIPLES, USUAL_BREAKOUT, label_of
 from fuzzyq_bullet.version import __version__
+from fuzzyq_bullet.workers import WorkerPool
 
 PLANNERS = ("fuzzy", "fuzzy-q-lambda")
 
@@ -58,15 +62,19 @@ def row(planner: str, run: int, **more: object) -> Row:
     return Row.model_validate(given | more)
 
 
-def plan_of(*planners: str, runs: int = 1, counts: tuple[int, ...] = (5,)) -> Plan:
-    settings = {name: settings_for(name).model_validate({"name": name}) for name in planners}
-    return Plan(settings, "kinematic", counts, runs, 0)
+def plan_of(*planners: str, runs: int = 1, counts: tuple[int, ...] = (5,)) -> FieldsPlan:
+    told = described(planners_of(planners))
+    return FieldsPlan(sweep="success", planners=told, counts=counts, runs=runs)
 
 
-def row_of(job: Job) -> Row:
-    where = job.environment
-    more = {"count": where.count, "seed": where.seed, "layout": where.layout, "drive": job.drive}
-    return row(job.planner, where.run, **more)
+def rows_of(plan: Plan) -> list[Row]:
+    """Return a row for every episode, as if all had gone well."""
+    return [row_of(where, name, drive) for where, name, drive in plan.schedule()]
+
+
+def row_of(where: Environment, name: str, drive: str) -> Row:
+    more = {"count": where.count, "seed": where.seed, "layout": where.layout, "drive": drive}
+    return row(name, where.run, **more)
 
 
 def write(folder: Path, settings: dict[str, object], rows: list[Row], table: str | None) -> None:
@@ -78,22 +86,20 @@ def write(folder: Path, settings: dict[str, object], rows: list[Row], table: str
         (folder / table).write_text(as_csv(rows))
 
 
-def success(folder: Path, plan: Plan, rows: list[Row] | None = None, *, done: bool = True) -> Path:
-    found = [row_of(job) for job in plan.jobs()] if rows is None else rows
-    settings = {"sweep": "success", **plan.described()}
-    write(folder, settings, found, "success.csv" if done else None)
+def success(
+    folder: Path, plan: FieldsPlan, rows: list[Row] | None = None, *, done: bool = True
+) -> Path:
+    found = rows_of(plan) if rows is None else rows
+    write(folder, plan.model_dump(mode="json"), found, "success.csv" if done else None)
     return folder
 
 
 @pytest.fixture(autouse=True)
 def _in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Films are made one after the other, and a second long: workers are tested by sweeps."""
-    monkeypatch.setattr(
-        "fuzzyq_bullet.experiments.report.work.spread",
-        lambda things, work, pool, hand_out: map(work, things),
-    )
-    monkeypatch.setattr("fuzzyq_bullet.experiments.report.films.LONGEST", 0.1)
-    monkeypatch.setattr("fuzzyq_bullet.experiments.learning_gain.statistics.RESAMPLES", 500)
+    monkeypatch.setattr(WorkerPool, "run", Here.run)
+    monkeypatch.setattr("fuzzyq_bullet.studies.report.films.LONGEST", 0.1)
+    monkeypatch.setattr("fuzzyq_bullet.studies.statistics.RESAMPLES", 500)
 
 
 def report(monkeypatch: pytest.MonkeyPatch, *given: object) -> int:
@@ -204,28 +210,27 @@ def test_every_sweep_of_a_folder_is_on_the_page(
 ) -> None:
     home = tmp_path / "<i>out & about"
     success(home / "success", plan_of(*PLANNERS, counts=(5, 25)))
-    pair = Weights(1.5, 0.5, candidates.USUAL_BREAKOUT)
-    table = Plan(contenders(pair), "kinematic", (50,), 2, 0)
-    settings = {"sweep": "steps steps", **table.described()}
-    write(home / "s" / "table", settings, [row_of(one) for one in table.jobs()], "steps.csv")
-    labels = [candidates.label_of(one) for one in candidates.TRIPLES]
+    pair = Weights(1.5, 0.5, USUAL_BREAKOUT)
+    told = described(contenders(pair))
+    table = FieldsPlan(sweep="steps steps", planners=told, counts=(50,), runs=2)
+    write(home / "s" / "table", table.model_dump(mode="json"), rows_of(table), "steps.csv")
+    labels = [label_of(one) for one in TRIPLES]
     for command in ("steps", "learning"):
         tried = labels if command == "learning" else labels[:2]
-        grid = [row(label, run) for label in tried for run in (1, 2)]
-        told = {"drive": "kinematic", "episodes": 2, "candidates": tried}
-        place = home / command[0] / "grid"
-        write(place, {"sweep": f"{command} grid", **told}, grid, "grid.csv")
-    best = candidates.label_of(candidates.HALF)
-    fixed = [best, candidates.label_of(candidates.ONE)]
-    told = {"drive": "kinematic", "seed": 0, "environments": 2, "counts": [5], "fixed": fixed}
+        rows = [row(label, run) for label in tried for run in (1, 2)]
+        grid = SearchPlan(sweep=f"{command} grid", drive="kinematic", episodes=2, candidates=tried)
+        write(home / command[0] / "grid", grid.model_dump(mode="json"), rows, "grid.csv")
+    fixed = tuple(label_of(one) for one in (HALF, ONE))
+    comparison = ComparisonPlan(
+        sweep="learning comparison", drive="kinematic", seed=0, environments=2, counts=(5,),
+        fixed=fixed,
+    )  # fmt: skip
     met = [row(name, run) for name in (*fixed, LEARNED) for run in (0, 1)]
-    write(
-        home / "l" / "comparison", {"sweep": "learning comparison", **told}, met, "comparison.csv"
-    )
-    fields = EscapePlan(settings_for("fuzzy").model_validate({"name": "fuzzy"}), ("wheels",), 1,
-                        (5,), 4, (30,))  # fmt: skip
-    ran = [row_of(job) for job in fields.jobs()]
-    write(home / "escape", {"sweep": "escape", **fields.described()}, ran, "escape.csv")
+    write(home / "l" / "comparison", comparison.model_dump(mode="json"), met, "comparison.csv")
+    fields = Escape(
+        planner="fuzzy", drive="wheels", runs=1, counts="5", traps=4, rectangles="30"
+    ).plan()
+    write(home / "escape", fields.model_dump(mode="json"), rows_of(fields), "escape.csv")
 
     assert report(monkeypatch, home, *PLAIN) == 0
     assert capsys.readouterr().out == f"{home / 'report.html'}\n"
@@ -233,7 +238,13 @@ def test_every_sweep_of_a_folder_is_on_the_page(
     page = Page(text)
     assert not page.open
     for words in (
-        *("Fig. 13", "Table 5", "2342", "best pair 1.5/0.5", "best on training environments"),
+        *(
+            "Fig. 13",
+            "Table 5",
+            "2342",
+            "best pair 1.5/0.5",
+            "best on 2 environments of the training",
+        ),
         *("What learning gains", "Out of dead ends, fuzzy", "1.00 [0.21, 1.00]", "traps"),
         *("fuzzyq bench steps --runs 2 --count 50 --grid 2 ", "--traps 4 --rectangles 30"),
         "--planners fuzzy,fuzzy-q-lambda --counts 5,25 --runs 1 --drive kinematic --seed 0",
@@ -259,15 +270,14 @@ def test_what_is_unfinished_or_not_there_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     plan = plan_of(*PLANNERS, runs=3)
-    rows = [row_of(job) for job in plan.jobs()][:3]
+    rows = rows_of(plan)[:3]
     success(tmp_path / "success", plan, rows, done=False)
     with (tmp_path / "success" / "journal.jsonl").open("a") as file:
         file.write('{"planner": "fuz')  # torn
-    plan.jobs()
     assert report(monkeypatch, tmp_path / "success", *PLAIN) == 0
     text = Page((tmp_path / "success" / "report.html").read_text()).text
     assert "unfinished, 3 of 6 episodes" in text
-    assert "1 environments, the same for every planner" in text
+    assert "5 1 1.00 [0.21, 1.00] 1.00 [0.21, 1.00] all 1" in text  # of three environments
     assert "fuzzyq bench steps --out" in text
     assert "3 of 6 episodes so far" in capsys.readouterr().err
 
@@ -282,10 +292,10 @@ def filmed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A report with three films: a run that is made again, one that differs, and none."""
     home = tmp_path_factory.mktemp("filmed")
     plan = plan_of("improved-fuzzy", *PLANNERS)
-    rows = {
-        job.planner: row_of(job) if job.planner == "improved-fuzzy" else run_row(job).row
-        for job in plan.jobs()
-    }
+    rows = {one.planner: one for one in rows_of(plan)}
+    for job in plan.jobs(planners_of(plan.planners)):
+        if job.planner != "improved-fuzzy":
+            rows[job.planner] = run_job(job).row
     rows["fuzzy"] = rows["fuzzy"].model_copy(update={"digest": "0" * 32})
     success(home / "success", plan, list(rows.values()))
     told = home / "success" / "settings.json"
@@ -294,11 +304,8 @@ def filmed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     settings["version"] = "0.0.1"
     told.write_text(json.dumps(settings))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            "fuzzyq_bullet.experiments.report.work.spread",
-            lambda things, work, pool, hand_out: map(work, things),
-        )
-        patch.setattr("fuzzyq_bullet.experiments.report.films.LONGEST", 0.1)
+        patch.setattr(WorkerPool, "run", Here.run)
+        patch.setattr("fuzzyq_bullet.studies.report.films.LONGEST", 0.1)
         assert report(patch, home, "--no-figures") == 0
     return home / "report.html"
 
@@ -394,7 +401,7 @@ def test_a_page_that_cannot_be_written_is_told_before_the_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = success(tmp_path / "success", plan_of(*PLANNERS))
-    monkeypatch.setattr("fuzzyq_bullet.experiments.report.work.make", lambda *_: 1 / 0)
+    monkeypatch.setattr("fuzzyq_bullet.studies.report.films.make", lambda *_: 1 / 0)
     for out in ("/dev/null/page.html", tmp_path / "success", "/proc/page.html", ""):
         with pytest.raises(UserError) as caught:
             report(monkeypatch, folder, "--out", out)
@@ -408,6 +415,7 @@ DAMAGED_SETTINGS = [
     ("escape", {"planner": {"name": 3}}),
     ("escape", {"drives": []}),
     ("escape", {"runs": -1}),
+    ("escape", {"runs": 0, "counts": [], "traps": 0}),
     ("success", {"planners": {"fixed-1-1": {"name": "improved-fuzzy"}}}),
     ("success", {"planners": {"fuzzy": {"name": "fuzzy", "weights": {"a": 1}}}}),
     ("success", {"counts": [-5]}),
@@ -419,20 +427,9 @@ DAMAGED_SETTINGS = [
 def test_settings_that_no_sweep_has_written_are_one_line(
     kind: str, changes: dict[str, object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from fuzzyq_bullet.experiments.escape.plan import Plan as EscapePlan
-
-    whole = {
-        "success": plan_of("fuzzy").described(),
-        "escape": EscapePlan(
-            settings=settings_for("improved-fuzzy").model_validate({"name": "improved-fuzzy"}),
-            drives=("kinematic",),
-            runs=1,
-            counts=(5,),
-            traps=0,
-            rectangles=(),
-            seed=0,
-        ).described(),
-    }[kind]
+    asked = {"drive": "kinematic", "runs": 1, "counts": "5", "traps": 0, "rectangles": "none"}
+    plan = plan_of("fuzzy") if kind == "success" else Escape.model_validate(asked).plan()
+    whole = plan.described()
     write(tmp_path, {"sweep": kind, **whole, **changes}, [], None)
     with pytest.raises(UserError, match=r"settings\.json: is damaged: "):
         report(monkeypatch, tmp_path, *PLAIN)

@@ -11,24 +11,24 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Call
+from conftest import Call, no_workers
 from rich.console import Console
 
 from fuzzyq_bullet import UserError
 from fuzzyq_bullet.cli.app import call
-from fuzzyq_bullet.experiments.steps.plan import PAPER_STEPS, contenders, roles
-from fuzzyq_bullet.experiments.steps.show import WIDTH as STEPS_WIDTH
-from fuzzyq_bullet.experiments.steps.show import as_tables as steps_tables
-from fuzzyq_bullet.experiments.steps.table import summary_of as steps_of
-from fuzzyq_bullet.experiments.success.contenders import PAPER
-from fuzzyq_bullet.experiments.success.picture import LOOKS, picture
-from fuzzyq_bullet.experiments.success.plan import COUNTS, LIMITS, M_S, RUNS, Plan
-from fuzzyq_bullet.experiments.success.show import WIDTH, as_tables
-from fuzzyq_bullet.experiments.success.table import summary_of
-from fuzzyq_bullet.experiments.sweep.rows import Row
-from fuzzyq_bullet.experiments.wilson import share
-from fuzzyq_bullet.planning import settings_for
+from fuzzyq_bullet.cli.study import printed
 from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
+from fuzzyq_bullet.studies import FieldsPlan, Swept
+from fuzzyq_bullet.studies.plan import LIMITS, M_S
+from fuzzyq_bullet.studies.planner_sets import PAPER, described
+from fuzzyq_bullet.studies.runner.rows import Row
+from fuzzyq_bullet.studies.statistics import share
+from fuzzyq_bullet.studies.steps.study import Steps, contenders, roles
+from fuzzyq_bullet.studies.steps.table import PAPER_STEPS
+from fuzzyq_bullet.studies.steps.table import summary_of as steps_of
+from fuzzyq_bullet.studies.success.picture import LOOKS, success_picture
+from fuzzyq_bullet.studies.success.study import COUNTS, RUNS, Success
+from fuzzyq_bullet.studies.success.table import summary_of
 
 PAIR = Weights(1.5, 0.5, 1.0)
 
@@ -99,8 +99,8 @@ def test_where_all_succeed_the_interval_still_has_a_width_and_nothing_has_no_sha
 
 def test_by_default_it_is_the_papers_experiment() -> None:
     assert (COUNTS[0], COUNTS[-1], len(COUNTS), RUNS) == (5, 125, 25, 50)
-    plan = Plan({name: settings_for(name).model_validate({"name": name}) for name in PAPER})
-    jobs = plan.jobs()
+    study = Success()
+    jobs = study.plan().jobs(study.planner_set())
     assert len(jobs) == 6250
     assert {job.limits for job in jobs} == {LIMITS}
     assert PAPER_STEPS["fuzzy"] < M_S
@@ -133,12 +133,15 @@ def test_a_planner_without_a_row_for_each_environment_is_a_mistake_of_the_caller
 
 def test_orders_of_the_paper_that_are_not_seen_are_named() -> None:
     strength = dict(zip(PAPER, (1, 7, 5, 5, 7), strict=True))
-    summary = summary_of(rows_by(lambda name, _, run: run < strength[name]))
+    rows = rows_by(lambda name, _, run: run < strength[name])
+    summary = summary_of(rows)
     assert [one.reproduced for one in summary.claims] == [True, False]  # a draw is no highest
-    console = Console(width=WIDTH, file=StringIO())
-    console.print(as_tables(summary, "kinematic.", M_S))
+    study = Success(counts="5,50", runs=10)
+    console = Console(width=study.width, file=StringIO())
+    results = {"success": Swept(study.plan(), tuple(rows))}
+    console.print(printed(study.findings(results)))
     shown = console.file.getvalue()
-    assert max(map(len, shown.splitlines())) <= WIDTH
+    assert max(map(len, shown.splitlines())) <= study.width
     assert "NOT seen" in shown
     assert "0.10 [0.02, 0.40]" in shown
     assert "M_s is 3000" in " ".join(shown.split())
@@ -146,7 +149,7 @@ def test_orders_of_the_paper_that_are_not_seen_are_named() -> None:
 
 def test_the_picture_tells_planners_apart_without_colour_and_shows_every_share() -> None:
     summary = summary_of(rows_by(lambda name, count, run: run * len(name) > count))
-    figure = picture(summary, "made by hand")
+    figure = success_picture(summary, "made by hand")
     above, below = figure.axes
     assert len({look.mark for look in LOOKS.values()}) == len(PAPER)
     assert len({look.colour for look in LOOKS.values()}) == len(PAPER)
@@ -183,10 +186,12 @@ def test_a_failure_has_no_steps_or_m_s_of_them_and_the_table_tells_which() -> No
     assert summary.common == 3  # of the planners with ways out: fuzzy does not shrink it
     assert [line.role for line in summary.lines[5:]] == ["fixed 1/1", "best pair 1.5/0.5"]
     assert all(line.paper is None for line in summary.lines[5:])
-    console = Console(width=STEPS_WIDTH, file=StringIO())
-    console.print(steps_tables(summary, "kinematic;", M_S, True))
+    console = Console(width=Steps.width, file=StringIO())
+    told = described(contenders(PAIR))
+    plan = FieldsPlan(sweep="steps steps", planners=told, counts=(50,), runs=3)
+    console.print(printed(Steps().findings({"steps": Swept(plan, tuple(rows))})))
     shown = console.file.getvalue()
-    assert max(map(len, shown.splitlines())) <= STEPS_WIDTH
+    assert max(map(len, shown.splitlines())) <= Steps.width
     assert "counting as 3000" in " ".join(shown.split())
 
 
@@ -235,13 +240,10 @@ def test_the_command_writes_rows_summary_and_picture(fuzzyq: Call, tmp_path: Pat
 def test_the_steps_of_all_seven_are_in_the_table_beside_the_papers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(  # in this process: no workers need to start
-        "fuzzyq_bullet.experiments.sweep.workers.spread",
-        lambda jobs, work, pool, hand_out: map(work, jobs),
-    )
     given = ("--pair", "2,0.5", "--runs", "1", "--count", "5", "--json", "--out", str(tmp_path))
     monkeypatch.setattr(sys, "argv", ["fuzzyq", "bench", "steps", *given])
-    assert call() == 0
+    with no_workers():
+        assert call() == 0
     told = json.loads(capsys.readouterr().out)
     assert told == json.loads((tmp_path / "steps.json").read_text())
     assert [(line["role"], line["paper"]) for line in told["lines"]] == [

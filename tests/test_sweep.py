@@ -10,23 +10,21 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import pytest
-from conftest import FUZZYQ, Call
+from conftest import FUZZYQ, Call, no_workers
 
 from fuzzyq_bullet import Trajectory, UserError, run
 from fuzzyq_bullet.cli.app import call
-from fuzzyq_bullet.experiments.sweep.episode import Done, run_job
-from fuzzyq_bullet.experiments.sweep.folder import Folder
-from fuzzyq_bullet.experiments.sweep.jobs import Environment, Job
-from fuzzyq_bullet.experiments.sweep.journal import Journal
-from fuzzyq_bullet.experiments.sweep.rows import Row, as_csv
-from fuzzyq_bullet.experiments.sweep.run import State, sweep
-from fuzzyq_bullet.experiments.sweep.workers import KILLED, Pool
 from fuzzyq_bullet.oracle import feasible
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import Limits, realise
+from fuzzyq_bullet.studies.runner.jobs import Environment, Job
+from fuzzyq_bullet.studies.runner.rows import Row, as_csv
+from fuzzyq_bullet.studies.runner.storage import Folder, Journal
+from fuzzyq_bullet.studies.runner.sweep import State, local_pool, run_job, sweep
+from fuzzyq_bullet.workers import Pool, WorkerPool
 
 FAST = ImprovedFuzzySettings(weights=(1.0, 1.0))
 CONTRACT = (
@@ -48,33 +46,46 @@ def jobs_for(count: int, runs: int, *, seconds: float = 60.0) -> list[Job]:
     ]
 
 
-def quick(job: Job) -> Done:
-    """Stand in for an episode; takes no time, and depends on the job alone."""
-    number = job.environment.run
-    return Done(
-        Row(
-            planner=job.planner,
-            drive=job.drive,
-            count=job.environment.count,
-            run=number,
-            seed=job.environment.seed,
-            layout=job.environment.layout,
-            feasible=True,
-            outcome="goal",
-            time_s=number / 3,
-        )
+Order: TypeAlias = dict[str, Any]
+KILLED = "its worker process died twice: its process ended by itself, with exit code 1"
+
+
+def row_of(job: Job) -> Row:
+    """Stand in for an episode: it takes no time, and depends on the job alone."""
+    return Row(
+        planner=job.planner,
+        drive=job.drive,
+        count=job.environment.count,
+        run=job.environment.run,
+        seed=job.environment.seed,
+        layout=job.environment.layout,
+        feasible=True,
+        outcome="goal",
+        time_s=job.environment.run / 3,
     )
 
 
-def deadly(job: Job) -> Done:
+def quick(order: Order) -> Order:
+    return {"row": row_of(Job.of_order(order)).model_dump(mode="json"), "record": None}
+
+
+def deadly(order: Order) -> Order:
     """End the worker without a word on run 2, as a crash in a library does."""
-    if job.environment.run == 2:
+    if order["environment"]["run"] == 2:
         os._exit(1)
-    return quick(job)
+    return quick(order)
 
 
-def telling_where(job: Job) -> Done:
-    return Done(quick(job).row.model_copy(update={"steps": os.getpid()}))
+def hanging(order: Order) -> Order:
+    """Never come back from run 2."""
+    while order["environment"]["run"] == 2:
+        time.sleep(0.01)
+    return quick(order)
+
+
+def telling_where(order: Order) -> Order:
+    row = Row.model_validate(quick(order)["row"]).model_copy(update={"steps": os.getpid()})
+    return {"row": row.model_dump(mode="json"), "record": None}
 
 
 # What a row is
@@ -85,7 +96,7 @@ def test_the_table_has_the_columns_that_scripts_rely_on() -> None:
 
 
 def test_a_table_is_sorted_by_number_not_by_text_and_does_not_depend_on_the_order_of_rows() -> None:
-    rows = [quick(job).row for job in (*jobs_for(5, 3), *jobs_for(25, 12))]
+    rows = [row_of(job) for job in (*jobs_for(5, 3), *jobs_for(25, 12))]
     text = as_csv(rows)
     assert text == as_csv(rows[::-1])
     assert [line.split(",")[2:4] for line in text.splitlines()[1:]] == [
@@ -149,14 +160,23 @@ def test_an_environment_that_cannot_be_built_is_a_row_with_its_error() -> None:
 
 
 def test_a_worker_that_dies_costs_one_row_and_not_the_sweep(tmp_path: Path) -> None:
-    done = sweep("t", jobs_for(5, 5), tmp_path, {}, pool=Pool(2), work=deadly)
-    assert [row.error for row in done.rows] == [None, None, KILLED, None, None]
-    again = sweep("t", jobs_for(5, 5), tmp_path, {}, pool=Pool(2), work=deadly)
+    with local_pool(2) as pool:
+        done = sweep("t", jobs_for(5, 5), tmp_path, {}, pool=pool, work=deadly)
+        assert [row.error for row in done.rows] == [None, None, KILLED, None, None]
+        again = sweep("t", jobs_for(5, 5), tmp_path, {}, pool=pool, work=deadly)
     assert (again.state.ran, again.rows) == (0, done.rows)
 
 
+def test_a_worker_that_hangs_costs_one_row_and_is_not_tried_again(tmp_path: Path) -> None:
+    with WorkerPool(1, timeout=1.0) as pool:
+        done = sweep("t", jobs_for(5, 4), tmp_path, {}, pool=pool, work=hanging)
+    late = "cut after 1 s of wall-clock time"
+    assert [row.error for row in done.rows] == [None, None, late, None]
+
+
 def test_a_single_worker_too_is_a_process_of_its_own(tmp_path: Path) -> None:
-    (row,) = sweep("t", jobs_for(5, 1), tmp_path, {}, pool=Pool(1), work=telling_where).rows
+    with local_pool(1) as pool:
+        (row,) = sweep("t", jobs_for(5, 1), tmp_path, {}, pool=pool, work=telling_where).rows
     assert row.steps not in (None, os.getpid())
 
 
@@ -164,7 +184,7 @@ def test_a_single_worker_too_is_a_process_of_its_own(tmp_path: Path) -> None:
 
 
 def test_rows_are_on_disk_as_they_come_and_a_torn_line_is_done_again(tmp_path: Path) -> None:
-    rows = [quick(job).row for job in jobs_for(5, 3)]
+    rows = [row_of(job) for job in jobs_for(5, 3)]
     path = tmp_path / "journal.jsonl"
     with Journal(path) as journal:
         journal.append(rows[0])
@@ -183,22 +203,22 @@ def test_rows_are_on_disk_as_they_come_and_a_torn_line_is_done_again(tmp_path: P
 
 def test_a_line_of_nonsense_is_passed_over(tmp_path: Path) -> None:
     path = tmp_path / "journal.jsonl"
-    row = quick(jobs_for(5, 1)[0]).row
+    row = row_of(jobs_for(5, 1)[0])
     path.write_bytes(b"\0\0\n{}\n" + row.model_dump_json().encode() + b"\n")
     with Journal(path) as journal:
         assert journal.rows == [row]
 
 
-def test_only_what_is_left_is_run_and_progress_counts_all(tmp_path: Path) -> None:
-    sweep("t", jobs_for(5, 2), tmp_path, {}, pool=Pool(1), work=quick)
+def test_only_what_is_left_is_run_and_progress_counts_all(here: Pool, tmp_path: Path) -> None:
+    sweep("t", jobs_for(5, 2), tmp_path, {}, pool=here, work=quick)
     seen: list[tuple[int, int, int]] = []
 
     def note(state: State) -> None:
         seen.append((state.done, state.ran, state.successes))
 
-    done = sweep("t", jobs_for(5, 4), tmp_path, {}, pool=Pool(1), work=quick, progress=note)
+    done = sweep("t", jobs_for(5, 4), tmp_path, {}, pool=here, work=quick, progress=note)
     assert seen == [(2, 0, 2), (3, 1, 3), (4, 2, 4)]
-    assert done.table.read_text() == as_csv(quick(job).row for job in jobs_for(5, 4))
+    assert done.table.read_text() == as_csv(row_of(job) for job in jobs_for(5, 4))
 
 
 def test_another_setting_is_refused_by_name(tmp_path: Path) -> None:
@@ -223,9 +243,9 @@ def test_two_sweeps_at_a_time_in_one_folder_are_refused(tmp_path: Path) -> None:
         pass
 
 
-def test_two_jobs_of_one_key_are_a_mistake_of_the_caller(tmp_path: Path) -> None:
+def test_two_jobs_of_one_key_are_a_mistake_of_the_caller(here: Pool, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="same key"):
-        sweep("t", jobs_for(5, 1) * 2, tmp_path, {})
+        sweep("t", jobs_for(5, 1) * 2, tmp_path, {}, pool=here)
 
 
 # The whole of it, as people call it
@@ -241,11 +261,7 @@ ROWS = 8
 def undisturbed(inside: Call, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A sweep that nobody disturbed, one job after the other here, and what it printed."""
     folder = tmp_path_factory.mktemp("sweep")
-    with pytest.MonkeyPatch.context() as patch:  # no workers need to start
-        patch.setattr(
-            "fuzzyq_bullet.experiments.sweep.workers.spread",
-            lambda jobs, work, pool, hand_out: map(work, jobs),
-        )
+    with no_workers():
         done = inside(*ESCAPE, "--out", folder, "--json")
     assert done.returncode in (0, 1), done.stderr
     (folder / "stdout").write_text(done.stdout)
@@ -291,7 +307,7 @@ def test_ctrl_c_ends_a_sweep_in_good_order(moment: str, tmp_path: Path) -> None:
     if moment == "while they work":
         wait_for(lambda: rows_in(tmp_path / "journal.jsonl") > 0, process)
     else:
-        wait_for(lambda: len(children_of(process.pid)) > 2, process)
+        wait_for(lambda: len(children_of(process.pid)) > 1, process)
         time.sleep(0.1)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
     stdout, stderr = process.communicate(timeout=30)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fuzzyq_bullet.checks.jobs import film_all
 from fuzzyq_bullet.checks.verdict import FilmJob, Keep, Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
@@ -16,7 +17,7 @@ from fuzzyq_bullet.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.checks.baseline import Baselines
-    from fuzzyq_bullet.checks.crew import Crew
+    from fuzzyq_bullet.workers import WorkerPool
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ class Session:
             source.unlink(missing_ok=True)
 
 
-def make_films(crew: Crew, verdicts: Sequence[Verdict]) -> Iterator[str]:
+def make_films(pool: WorkerPool, verdicts: Sequence[Verdict]) -> Iterator[str]:
     """Make the films of all runs whose record was kept; yield a line about each.
 
     A film that fails changes no verdict.
@@ -91,7 +92,7 @@ def make_films(crew: Crew, verdicts: Sequence[Verdict]) -> Iterator[str]:
     kept = [verdict for verdict in verdicts if verdict.record]
     records = [str(verdict.record) for verdict in kept]
     films = [FilmJob(record=one, video=str(Path(one).with_suffix(".mp4"))) for one in records]
-    for i, why in crew.film(films):
+    for i, why in film_all(pool, films):
         if why:
             kept[i].no_film = why
             yield f"no film {films[i].video}: {why}"

@@ -8,11 +8,8 @@ from collections.abc import Sequence
 from fuzzyq_bullet.checks.verdict import Job, Verdict
 from fuzzyq_bullet.collision_text import plain
 from fuzzyq_bullet.errors import printable
+from fuzzyq_bullet.workers.pool import MEMORY_MB, TIMEOUT
 
-TIMEOUT = 120.0
-"""Wall-clock time (s) that one scenario may take, where nothing else is said."""
-MEMORY_MB = 2048
-"""Memory that one worker may use (MB), where nothing else is said."""
 AGAIN = "      again: "
 """What the command that replays a run begins with."""
 _MARKS = {"passed": "ok", "failed": "FAIL", "broken": "FAIL", "invalid": "ERROR"}

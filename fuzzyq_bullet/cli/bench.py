@@ -1,18 +1,59 @@
-"""``fuzzyq bench``: measurements of the project, of its speed and of what it achieves."""
+"""``fuzzyq bench``: measurements of the project, of its speed and of what it achieves.
+
+Every study that is registered has a command here, made from its fields (``studies.study``).
+"""
 
 from __future__ import annotations
 
-from typing import Annotated
+import inspect
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
-from fuzzyq_bullet.cli.bench_escape import escape
-from fuzzyq_bullet.cli.bench_learning import learning
-from fuzzyq_bullet.cli.bench_steps import steps
-from fuzzyq_bullet.cli.bench_success import success
-from fuzzyq_bullet.cli.options import Json, help_of
+from fuzzyq_bullet.cli.console import progress_bar, say
+from fuzzyq_bullet.cli.options import FOLDER, Backend, Jobs, Json, PluginOption, Scheduler, help_of
+from fuzzyq_bullet.errors import UserError
 
-app = typer.Typer(help="Measure the project itself.", no_args_is_help=True)
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from fuzzyq_bullet.studies.study import Study
+
+
+class _Studies(TyperGroup):
+    """The studies as commands; none is imported before somebody asks for it."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        from fuzzyq_bullet.studies.registry import study_names
+
+        return [*super().list_commands(ctx), *study_names()]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        from fuzzyq_bullet.studies.registry import study_names, study_of
+
+        if cmd_name not in study_names():
+            return super().get_command(ctx, cmd_name)
+        holder = typer.Typer(add_completion=False)
+        command = _command_of(study_of(cmd_name))
+        holder.command(cmd_name, help=help_of(command))(command)
+        return typer.main.get_command(holder)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        if self.get_command(ctx, args[0]) is None:  # perhaps one of a plugin's
+            from fuzzyq_bullet.plugins import load_plugins
+
+            load_plugins(_plugins_in(args))
+            from fuzzyq_bullet.studies.registry import study_names
+
+            for name in study_names():  # among which a misspelt one is looked for
+                self.commands.setdefault(name, self.get_command(ctx, name))
+        return super().resolve_command(ctx, args)
+
+
+app = typer.Typer(cls=_Studies, help="Measure the project itself.", no_args_is_help=True)
 
 
 @app.callback()
@@ -36,8 +77,6 @@ def speed(
     Raises:
         UserError: If the rate is not allowed.
     """
-    from fuzzyq_bullet.cli.console import progress_bar, say
-    from fuzzyq_bullet.errors import UserError
     from fuzzyq_bullet.experiments.speed import MEASUREMENTS, as_json, as_table
 
     if not 1 <= rate <= 80 or 240 % rate:
@@ -61,7 +100,81 @@ def speed(
         raise typer.Exit(1)
 
 
-app.command("escape", help=help_of(escape))(escape)
-app.command("learning", help=help_of(learning))(learning)
-app.command("success", help=help_of(success))(success)
-app.command("steps", help=help_of(steps))(steps)
+def _plugins_in(args: Sequence[str]) -> list[str]:
+    """Return what ``--plugin`` names in words of a command line that nobody has parsed yet."""
+    named = [after for word, after in pairwise(args) if word == "--plugin"]
+    return named + [word.partition("=")[2] for word in args if word.startswith("--plugin=")]
+
+
+def _command_of(study: type[Study]) -> Callable[..., None]:
+    """Return the command of a study: its fields are options, beside those that all have."""
+
+    def command(
+        *,
+        jobs: Jobs = None,
+        backend: Backend = "loky",
+        scheduler: Scheduler = None,
+        out: Annotated[Path, typer.Option(help="Folder of the study.", **FOLDER)] = Path(),
+        plugin: PluginOption = None,
+        json: Json = False,
+        **given: Any,
+    ) -> None:
+        from fuzzyq_bullet.cli.study import run_study
+
+        run_study(_asked(study, given), out, (backend, scheduler, jobs), plugin or [], json=json)
+
+    fields = sorted(study.model_fields.items(), key=lambda one: one[0] == "seed")
+    options = [
+        inspect.Parameter(
+            name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=field.default,
+            annotation=Annotated[field.annotation, _option_of(name, field)],
+        )
+        for name, field in fields
+    ]
+    hints = inspect.signature(command, eval_str=True).parameters
+    common = [one for one in hints.values() if one.kind is not inspect.Parameter.VAR_KEYWORD]
+    common = [
+        one.replace(default=Path("out") / study.name) if one.name == "out" else one
+        for one in common
+    ]
+    command.__doc__ = study.__doc__
+    command.__signature__ = inspect.Signature([*options, *common])  # type: ignore[attr-defined]
+    command.__annotations__ = {one.name: one.annotation for one in (*options, *common)}
+    return command
+
+
+def _asked(study: type[Study], given: dict[str, Any]) -> Study:
+    """Return the study with what was given.
+
+    Raises:
+        UserError: If an option is wrong.
+    """
+    from pydantic import ValidationError
+
+    least, most = (_bounds(study.model_fields["seed"])[name] for name in ("min", "max"))
+    if not least <= given["seed"] <= most:
+        raise UserError(f"--seed: must be from {least} to {most}, got {given['seed']}")
+    try:
+        return study(**given)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        name = str(first["loc"][0]).replace("_", "-") if first["loc"] else study.name
+        raise UserError(f"--{name}: {first['msg']}") from error
+
+
+def _bounds(field: Any) -> dict[str, Any]:
+    return {
+        name: getattr(one, key)
+        for one in field.metadata
+        for key, name in (("ge", "min"), ("le", "max"))
+        if hasattr(one, key)
+    }
+
+
+def _option_of(name: str, field: Any) -> Any:
+    """Return what the command line has to know of a field."""
+    bounds = {} if name == "seed" else _bounds(field)  # whose bounds are longer than the help
+    metavar = "FILE" if field.annotation == Path | None else None
+    return typer.Option(help=field.description, metavar=metavar, **bounds)

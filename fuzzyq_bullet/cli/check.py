@@ -85,7 +85,7 @@ def check(
         UserError: If an option is wrong, or there is no scenario.
     """
     from fuzzyq_bullet.checks.baseline import Baselines, baselines_beside, refuse_bundled
-    from fuzzyq_bullet.checks.crew import Crew
+    from fuzzyq_bullet.checks.jobs import check_all
     from fuzzyq_bullet.checks.plan import Plan, discover, planned
     from fuzzyq_bullet.checks.reports import as_json, harmless, junit_xml, problem_command
     from fuzzyq_bullet.checks.session import Session, make_films
@@ -94,7 +94,7 @@ def check(
     from fuzzyq_bullet.cli.process import say_error
     from fuzzyq_bullet.files import refuse_inputs, writable_files, writable_folder, write_text
     from fuzzyq_bullet.outputs import plugin_inputs
-    from fuzzyq_bullet.platforms import cores
+    from fuzzyq_bullet.workers import WorkerPool
 
     if record and strict:
         raise UserError("--record and --strict exclude each other: one notes, the other compares")
@@ -124,11 +124,11 @@ def check(
 
         session = Session(None if record else baselines, strict, video.value, out, replace)
         verdicts = []
-        with Crew(jobs or cores(), plugins=plugin or [], timeout=timeout, memory_mb=memory) as crew:
-            for verdict in session.settled(crew.check(plan.jobs)):
+        with WorkerPool(jobs, plugins=plugin or [], timeout=timeout, memory_mb=memory) as pool:
+            for verdict in session.settled(check_all(pool, plan.jobs)):
                 verdicts.append(verdict)
                 show(verdict)
-            for line in make_films(crew, verdicts):
+            for line in make_films(pool, verdicts):
                 say(line)
     if record:
         for path in baselines.write(verdicts):

@@ -29,7 +29,7 @@ def report(
     jobs: Jobs = None,
     plugin: PluginOption = None,
 ) -> None:
-    """Make one page of what fuzzyq bench success, steps, learning and escape wrote below DIR.
+    """Make one page of what the studies of fuzzyq bench wrote below DIR.
 
     It needs no server and no other file. Unfinished sweeps are shown as far as they are. Films are
     of runs made again from their seeds, and held to the digests of their rows.
@@ -38,22 +38,26 @@ def report(
         UserError: If DIR holds no sweep, one is damaged, or the page cannot be written.
     """
     from fuzzyq_bullet.cli.console import progress_bar, say
-    from fuzzyq_bullet.experiments.report.evaluation import evaluation_of, wanted_films
     from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
     from fuzzyq_bullet.outputs import plugin_inputs
+    from fuzzyq_bullet.studies.report.found import studies_below
 
-    evaluation = evaluation_of(folder)
+    found = studies_below(folder)
     target = folder / "report.html" if out is None else out
     (target,) = writable_files(target.parent, [target.name])
-    sources = [path for sweep in evaluation.sweeps for path in sweep.files]
+    sweeps = [(stage, swept) for one in found for stage, swept in one.results.items()]
+    sources = [
+        swept.folder / name
+        for stage, swept in sweeps
+        for name in ("settings.json", "journal.jsonl", f"{stage}.csv")
+    ]
     refuse_inputs([target], [*sources, *plugin_inputs(plugin or [])])
 
     from fuzzyq_bullet.experiments.figures import FIGURES
-    from fuzzyq_bullet.experiments.report.films import Film, Wanted
-    from fuzzyq_bullet.experiments.report.page import page
-    from fuzzyq_bullet.experiments.report.work import make
+    from fuzzyq_bullet.studies.report.films import Film, Wanted, make, wanted_films
+    from fuzzyq_bullet.studies.report.page import page
 
-    wanted = wanted_films(evaluation.success) if videos else {}
+    wanted = wanted_films(found) if videos else {}
     drawn = sorted(FIGURES) if figures else []
     # Films first: they take longest, and the end should not wait for one.
     things: list[Wanted | int] = [*wanted.values(), *drawn]
@@ -64,11 +68,11 @@ def report(
     pictures = {number: one for number in drawn if isinstance(one := named[number], bytes)}
     command = f"fuzzyq report {shlex.quote(str(folder))}"
     command += ("" if videos else " --no-videos") + ("" if figures else " --no-figures")
-    shown = page(evaluation, films if videos else None, pictures if figures else None, command)
+    shown = page(folder, found, films if videos else None, pictures if figures else None, command)
     write_text(target, shown)
-    for sweep in evaluation.sweeps:
-        if not sweep.finished:
-            say(f"{sweep.folder}: {len(sweep.rows)} of {sweep.settings.total} episodes so far")
+    for _, swept in sweeps:
+        if not swept.finished:
+            say(f"{swept.folder}: {len(swept.rows)} of {swept.plan.total} episodes so far")
     other = sum(one.other for one in films.values())
     if other:
         say(f"{other} of {len(films)} runs came out otherwise than in their rows: see the page")

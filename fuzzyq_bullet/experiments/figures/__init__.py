@@ -1,14 +1,14 @@
-"""The paper's figures, by number: each a module of its own with a function ``draw``.
+"""The paper's figures, by number.
 
-A new figure is one new module here and one line in ``FIGURES``.
+A new figure is one new line in ``FIGURES``, and what draws it: a module with a function ``draw``,
+or, if it is made of runs, an entry in ``runs``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
-from typing import NamedTuple, TypeAlias, cast
+from typing import NamedTuple, TypeAlias
 
 Draw: TypeAlias = Callable[[Path], list[Path]]
 """Draws into a folder and returns the files written, the main one first."""
@@ -18,20 +18,18 @@ class Entry(NamedTuple):
     """One line of the registry.
 
     Attributes:
-        module: Name of the module in this package that draws the figure.
         shows: What the figure shows, in a few words.
     """
 
-    module: str
     shows: str
 
 
 FIGURES: dict[int, Entry] = {
-    4: Entry("figure4", "step and turn over all that the fuzzy controller can be told"),
-    9: Entry("figure9", "an obstacle at the start or the goal, and the safer environment"),
-    10: Entry("figure10", "deadlock in a semicircle without breakout, and three escapes"),
-    11: Entry("figure11", "a large obstacle without and with sustained avoidance"),
-    12: Entry("figure12", "80 and 120 random obstacles, rectangles, dense rectangles"),
+    4: Entry("step and turn over all that the fuzzy controller can be told"),
+    9: Entry("an obstacle at the start or the goal, and the safer environment"),
+    10: Entry("deadlock in a semicircle without breakout, and three escapes"),
+    11: Entry("a large obstacle without and with sustained avoidance"),
+    12: Entry("80 and 120 random obstacles, rectangles, dense rectangles"),
 }
 
 
@@ -41,5 +39,10 @@ def drawing(number: int) -> Draw:
     Raises:
         KeyError: If no figure has this number.
     """
-    module = import_module(f"{__name__}.{FIGURES[number].module}")
-    return cast("Draw", module.draw)
+    if number == 4:
+        from fuzzyq_bullet.experiments.figures import figure4
+
+        return figure4.draw
+    from fuzzyq_bullet.experiments.figures import runs
+
+    return runs.FIGURES[number].draw

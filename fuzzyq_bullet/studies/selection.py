@@ -1,0 +1,165 @@
+"""Which fixed weights are best: the search on a training's environments, and the rule.
+
+Safe first, then sure, then fast. Times are compared over the same environments for all that are
+left by then: otherwise weights would look fast that fail where the way is long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from pydantic import Field
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
+from fuzzyq_bullet.scenario import Drive, Limits
+from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
+from fuzzyq_bullet.studies.runner.jobs import Environment
+from fuzzyq_bullet.studies.runner.rows import Row
+from fuzzyq_bullet.studies.statistics import by_planner, feasible_runs
+from fuzzyq_bullet.studies.study import Stage
+from fuzzyq_bullet.studies.weight_grid import label_of, settings_of, words_of
+from fuzzyq_bullet.training.registry import recipe_of
+
+
+class SearchPlan(Plan):
+    """The grid search, on the environments of a training.
+
+    Attributes:
+        drive: What moves the robot.
+        training_seed: Of the training.
+        episodes: How many of its environments: those of its first episodes.
+        tasks: What identifies what the training was given.
+        candidates: What rows call the weights to try.
+        limits: When an episode is given up.
+    """
+
+    drive: Drive
+    training_seed: Seed = 0
+    episodes: Number
+    tasks: str = ""
+    candidates: tuple[str, ...] = Field(min_length=1)
+    limits: Limits = PATIENT
+
+    def environments(self) -> Iterator[Environment]:
+        """Yield the environments of the first episodes, with the seeds that training uses."""
+        tasks = recipe_of("fuzzy-q-lambda").tasks(self.drive, self.training_seed)
+        for episode in range(1, self.episodes + 1):
+            scenario = tasks.scenario_of(episode)
+            yield Environment("scatter", len(scenario.obstacles), episode, scenario.seed)
+
+    def schedule(self) -> Iterator[Episode]:
+        """Yield all episodes, those of one environment one after the other."""
+        for where in self.environments():
+            for name in self.candidates:
+                yield where, name, self.drive
+
+    @property
+    def total(self) -> int:
+        """Its episodes; no environment is drawn for that."""
+        return len(self.candidates) * self.episodes
+
+    def holds(self, row: Row) -> bool:
+        """Tell whether a row is one of the sweep's."""
+        mine = row.planner in self.candidates and row.drive == self.drive
+        return mine and 1 <= row.run <= self.episodes
+
+
+def search(study: str, drive: Drive, seed: int, episodes: int, tried: Sequence[Weights]) -> Stage:
+    """Return the stage ``grid`` of a study, which tries fixed weights where a training was.
+
+    Args:
+        study: Name of the study.
+        drive: What moves the robot.
+        seed: Of the training.
+        episodes: How many of its environments.
+        tried: The weights.
+    """
+    plan = SearchPlan(
+        sweep=f"{study} grid",
+        drive=drive,
+        training_seed=seed,
+        episodes=episodes,
+        tasks=recipe_of("fuzzy-q-lambda").tasks(drive, seed).digest(),
+        candidates=tuple(label_of(one) for one in tried),
+    )
+    return Stage("grid", plan, {label_of(one): settings_of(one) for one in tried})
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What some weights came to in the search.
+
+    Attributes:
+        weights: They themselves.
+        collisions: How many runs ended in one.
+        solved: Feasible environments in which they reached the goal.
+        time: Mean time to the goal (s) over the environments that the search compares times on;
+            None for weights that were out before.
+    """
+
+    weights: Weights
+    collisions: int
+    solved: int
+    time: float | None
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The best of some weights.
+
+    Attributes:
+        best: They themselves.
+        feasible: Environments that have a way.
+        common: Environments that the times were compared on.
+        trials: All weights that were tried, in their order.
+    """
+
+    best: Weights
+    feasible: int
+    common: int
+    trials: tuple[Trial, ...]
+
+
+def best_of(rows: Iterable[Row], candidates: Sequence[Weights]) -> Choice:
+    """Return the best of ``candidates``.
+
+    Those with the fewest collisions (none, if any has none); of these, those that reached the goal
+    in the most feasible environments; of these, the one with the least mean time over the
+    environments that all of these solved. Among equals the first.
+
+    Args:
+        rows: Rows of the search; others than the candidates' are passed over.
+        candidates: The weights, at least one.
+
+    Raises:
+        UserError: If there is no environment that all of the last solved.
+    """
+    table = by_planner(rows)
+    feasible = feasible_runs(table)
+    runs = {weights: table[label_of(weights)] for weights in candidates}
+    hits = {one: sum(row.collisions or 0 for row in runs[one].values()) for one in candidates}
+    solved = {
+        one: {run for run, row in runs[one].items() if row.success and run in feasible}
+        for one in candidates
+    }
+    safe = [one for one in candidates if hits[one] == min(hits.values())]
+    most = max(len(solved[one]) for one in safe)
+    left = [one for one in safe if len(solved[one]) == most]
+    common = set.intersection(*(solved[one] for one in left))
+    if not common:
+        told = "; ".join(words_of(one) for one in left[:3])
+        raise UserError(
+            f"--grid: no environment of the search was solved by all of the best weights ({told}"
+            f"{', …' if len(left) > 3 else ''}); give more environments"
+        )
+    times = {one: _mean_time(runs[one], common) for one in left}
+    best = min(left, key=lambda one: times[one])
+    trials = tuple(Trial(one, hits[one], len(solved[one]), times.get(one)) for one in candidates)
+    return Choice(best, len(feasible), len(common), trials)
+
+
+def _mean_time(rows: Mapping[int, Row], runs: Iterable[int]) -> float:
+    return fmean(rows[run].time_s or 0.0 for run in runs)
