@@ -22,7 +22,7 @@ hypothesis.settings.load_profile("fuzzyq")
 SLOW = (
     *("check", "cli_interrupt", "cli_train", "cluster", "escape_memory", "escape_table"),
     *("figure_panels", "gym", "layouts", "learned_weights", "learning_gain", "learning_training"),
-    *("oracle", "package", "pythons", "report", "success", "sweep", "video", "video_picture"),
+    *("ground_truth", "package", "pythons", "report", "success", "sweep", "video", "video_picture"),
 )
 """Modules of tests that take long: ``-m "not slow"`` leaves them out."""
 

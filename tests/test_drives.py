@@ -91,19 +91,6 @@ def test_what_is_near_tells_the_clearance_of_all(cylinders, boxes, arena, jumps,
         assert near.clearance(x, y) == pytest.approx(field.clearance([(x, y)])[0], abs=1e-9)
 
 
-def test_what_is_near_is_looked_for_now_and_then_only(monkeypatch):
-    looked = []
-    around = Field.around
-    monkeypatch.setattr(
-        Field, "around", lambda self, *asked: looked.append(asked) or around(self, *asked)
-    )
-    field = Field(np.array([[k, 1.0, 0.2] for k in range(30)]))
-    near = Nearby(field)
-    for x in np.arange(5.0, 15.0, 0.05):
-        near.clearance(float(x), 0.0)
-    assert 2 <= len(looked) <= 25
-
-
 def test_where_nothing_stands_it_is_asked_once():
     measured = []
     apart = Apart(lambda x, y: measured.append((x, y)) or math.inf)

@@ -14,8 +14,8 @@ from fuzzyq_bullet.drives.wheels import TICK_STEPS
 from fuzzyq_bullet.episode import Episode, run, run_in
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.ground_truth import shortest_path
 from fuzzyq_bullet.metrics import result_of
-from fuzzyq_bullet.oracle import shortest_path
 from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings

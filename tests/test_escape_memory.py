@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csgraph
 
 from fuzzyq_bullet.geometry import Field, wrap_angle
-from fuzzyq_bullet.oracle import feasible
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.planning import Decision, Observation, promise
 from fuzzyq_bullet.planning.course import PATIENCE as COURSE_PATIENCE
 from fuzzyq_bullet.planning.course import Course, Leg

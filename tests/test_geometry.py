@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import WALL, Field, wrap_angle
+from fuzzyq_bullet.scenario import Arena, Box, Cylinder
 
 coordinate = st.floats(-3.0, 3.0).map(lambda v: round(v, 3))
 angle = st.floats(-7.0, 7.0)
@@ -220,18 +220,16 @@ def test_an_empty_field_is_free_everywhere():
 
 def test_indices_are_those_of_the_scenario_with_shapes_mixed():
     obstacles = [
-        SimpleNamespace(shape="box", position=(1.0, 1.0), size=(0.4, 0.4), yaw=0.0),
-        SimpleNamespace(shape="cylinder", position=(3.0, 1.0), radius=0.2),
-        SimpleNamespace(shape="box", position=(5.0, 1.0), size=(0.4, 0.4), yaw=0.3),
+        Box(shape="box", position=(1.0, 1.0), size=(0.4, 0.4)),
+        Cylinder(shape="cylinder", position=(3.0, 1.0), radius=0.2),
+        Box(shape="box", position=(5.0, 1.0), size=(0.4, 0.4), yaw=0.3),
     ]
-    field = Field.of(obstacles, SimpleNamespace(size=(9.0, 9.0), walls=True))
+    field = Field.of(obstacles, Arena(size=(9.0, 9.0)))
     for i, item in enumerate(obstacles):
         assert field.nearest(item.position) == (i, -0.2)
     assert field.nearest((8.5, 5.0)) == (WALL, 0.5)
     np.testing.assert_allclose(field.distances((1.0, 2.0)), [0.8, math.sqrt(5) - 0.2, 3.88], 1e-2)
-    assert Field.of(obstacles, SimpleNamespace(size=(9.0, 9.0), walls=False)).arena is None
-    with pytest.raises(ValueError, match="cone"):
-        Field.of([SimpleNamespace(shape="cone")])
+    assert Field.of(obstacles, Arena(size=(9.0, 9.0), walls=False)).arena is None
 
 
 def test_a_field_is_frozen_and_shares_no_memory_with_what_it_was_built_from():
@@ -240,14 +238,14 @@ def test_a_field_is_frozen_and_shares_no_memory_with_what_it_was_built_from():
     source[0, 0] = 99.0
     assert field.nearest((0, 0)) == (0, 1.5)
     with pytest.raises(ValueError, match="read-only"):
-        field.cylinders[0, 0] = 1.0
+        field.groups[0].discs[0, 0] = 1.0
     with pytest.raises(AttributeError):
         field.arena = (1.0, 1.0)
 
 
 def test_numbering_an_obstacle_twice_is_refused():
     with pytest.raises(ValueError, match="number all obstacles once"):
-        Field(np.ones((2, 3)), cylinder_index=np.array([0, 0]))
+        Field(np.ones((2, 3)), order=[0, 0])
 
 
 def test_where_something_is_touched_lies_on_its_surface() -> None:

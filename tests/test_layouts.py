@@ -14,7 +14,7 @@ from scipy.ndimage import label
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.oracle import feasible, shortest_path
+from fuzzyq_bullet.ground_truth import feasible, shortest_path
 from fuzzyq_bullet.scenario import (
     ROBOT_RADIUS,
     Box,

@@ -24,7 +24,7 @@ from fuzzyq_bullet.experiments.sweep.journal import Journal
 from fuzzyq_bullet.experiments.sweep.rows import Row, as_csv
 from fuzzyq_bullet.experiments.sweep.run import State, sweep
 from fuzzyq_bullet.experiments.sweep.workers import KILLED, Pool
-from fuzzyq_bullet.oracle import feasible
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import Limits, realise
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.experiments.timing import interleaved
-from fuzzyq_bullet.oracle.search import shortest_route
-from fuzzyq_bullet.oracle.world import GrownWorld
+from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
+from fuzzyq_bullet.ground_truth.search import shortest_route
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import ROBOT_RADIUS, Limits, Scenario, random_task, realise
 
@@ -76,7 +76,7 @@ def _driving(fields: list[Scenario]) -> Callable[[], object]:
 
 def _asking(field: Scenario) -> Callable[[], object]:
     def work() -> object:
-        world = GrownWorld.of(field.obstacles, field.arena.size, ROBOT_RADIUS)
+        world = ConfigurationSpace.of(field.obstacles, field.arena.size, ROBOT_RADIUS)
         goal = field.goal
         return shortest_route(world, field.start.position, goal.position, goal.radius)
 

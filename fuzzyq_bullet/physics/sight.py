@@ -15,8 +15,9 @@ from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.groups import Group
 from fuzzyq_bullet.physics.lines import LineBundle
 from fuzzyq_bullet.physics.robot import BODY_HEIGHT
-from fuzzyq_bullet.physics.sensing import ROUNDNESS, meshes
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena, Box, Cylinder
+from fuzzyq_bullet.physics.sensing import meshes
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena
+from fuzzyq_bullet.shapes import ROUNDNESS, Shape
 
 SENSOR_RANGE = 1.0
 """Longest distance a detection line tells (m): 5·S_p."""
@@ -54,7 +55,7 @@ class Sight:
 
     def __init__(
         self,
-        obstacles: Sequence[Cylinder | Box],
+        obstacles: Sequence[Shape],
         arena: Arena,
         *,
         engine: Engine | None = None,
@@ -66,7 +67,9 @@ class Sight:
         self.engine.reset()
         self._api = self.engine.api
         self._lines = LineBundle(ROBOT_RADIUS, SENSOR_MARGIN, SENSOR_RANGE, BODY_HEIGHT)
-        self.beside = _BESIDE + _BEYOND * float(self.field.boxes[:, 2:4].max(initial=0.0))
+        self.beside = _BESIDE + _BEYOND * max(
+            (group.longest_face for group in self.field.groups), default=0.0
+        )
         self._build(obstacles, arena)
 
     def sense(
@@ -124,7 +127,7 @@ class Sight:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _build(self, obstacles: Sequence[Cylinder | Box], arena: Arena) -> None:
+    def _build(self, obstacles: Sequence[Shape], arena: Arena) -> None:
         """Put all that is to be there into the engine."""
         for mesh in meshes(obstacles, arena):
             self._group(self._build_faces(*mesh), -1, Group.FACES, Group.RAYS)

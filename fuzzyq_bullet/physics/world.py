@@ -10,7 +10,8 @@ from fuzzyq_bullet.physics.groups import Group
 from fuzzyq_bullet.physics.robot import Robot
 from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
 from fuzzyq_bullet.physics.static import obstacles_urdf, walls_urdf
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena, Box, Cylinder
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena
+from fuzzyq_bullet.shapes import Shape
 
 CLEARANCE_RANGE = 2.0
 """Longest clearance told (m); beyond it the clearance is infinite."""
@@ -25,10 +26,10 @@ class World(Sight):
         engine: An engine to build in, emptied first; by default a new one that the world owns.
     """
 
-    def _build(self, obstacles: Sequence[Cylinder | Box], arena: Arena) -> None:
+    def _build(self, obstacles: Sequence[Shape], arena: Arena) -> None:
         # The order of loading is part of the trajectory: ground, obstacles, walls, faces, robot.
         ground = self._build_ground()
-        self._obstacles = self.engine.load_text(obstacles_urdf(obstacles)) if obstacles else None
+        self._obstacles = self.engine.load_text(*obstacles_urdf(obstacles)) if obstacles else None
         self.walls = self.engine.load_text(walls_urdf(arena)) if arena.walls else None
         super()._build(obstacles, arena)
         self.robot = Robot(self.engine)

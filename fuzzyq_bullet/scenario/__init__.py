@@ -29,8 +29,8 @@ from fuzzyq_bullet.scenario.models import (
     Start,
 )
 from fuzzyq_bullet.scenario.options import with_options
+from fuzzyq_bullet.scenario.random_tasks import random_task
 from fuzzyq_bullet.scenario.schema import scenario_schema
-from fuzzyq_bullet.scenario.tasks import random_task
 
 __all__ = [
     "MAX_OBSTACLES",

@@ -6,15 +6,17 @@ its test, for obstacles from any source.
 
 from __future__ import annotations
 
+import math
 from typing import TypeAlias
 
 import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Box, Obstacle, Scenario
+from fuzzyq_bullet.quantities import TOUCH
+from fuzzyq_bullet.scenario.layouts.placing import separated
+from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle, Scenario
 from fuzzyq_bullet.scenario.problems import MAX_SHOWN, Loc, key_path
-from fuzzyq_bullet.scenario.shapes import TOUCH
 
 Conflict: TypeAlias = tuple[Loc, str]
 
@@ -101,24 +103,14 @@ def _random(scenario: Scenario) -> list[Conflict]:
 
 
 def _is_outside(item: Obstacle, width: float, depth: float) -> bool:
-    """Tell whether no part of an obstacle is inside the arena (separating axes, exactly)."""
-    x, y = item.position
-    beside_x, beside_y = max(-x, x - width, 0.0), max(-y, y - depth, 0.0)
-    if not isinstance(item, Box):
-        return bool(np.hypot(beside_x, beside_y) >= item.radius)
-    if beside_x == 0.0 and beside_y == 0.0:
-        return False
-    c, s = np.cos(item.yaw), np.sin(item.yaw)
-    hx, hy = item.size[0] / 2, item.size[1] / 2
-    ax, ay = width / 2, depth / 2
-    dx, dy = x - ax, y - ay
-    gaps = (
-        abs(dx) - ax - hx * abs(c) - hy * abs(s),
-        abs(dy) - ay - hx * abs(s) - hy * abs(c),
-        abs(dx * c + dy * s) - hx - ax * abs(c) - ay * abs(s),
-        abs(dy * c - dx * s) - hy - ax * abs(s) - ay * abs(c),
-    )
-    return bool(max(gaps) >= 0.0)
+    """Tell whether no part of an obstacle is inside the arena (exactly)."""
+    points, radius = item.corners()
+    if len(points) == 1:
+        (x, y), *_ = points.tolist()
+        beside_x, beside_y = max(-x, x - width, 0.0), max(-y, y - depth, 0.0)
+        return math.hypot(beside_x, beside_y) >= radius
+    arena = np.array([(0.0, 0.0), (width, 0.0), (width, depth), (0.0, depth)])
+    return separated(arena, item.outline())
 
 
 def _remedy(gap: float) -> str:

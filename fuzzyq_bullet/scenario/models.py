@@ -16,23 +16,20 @@ from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
 from fuzzyq_bullet.planning.settings import PlannerSettings
-from fuzzyq_bullet.scenario.layouts.registry import AnyLayout
-from fuzzyq_bullet.scenario.layouts.scatter import Random
-from fuzzyq_bullet.scenario.shapes import (
+from fuzzyq_bullet.quantities import (
     MAX_OBSTACLES,
     MIN_RADIUS,
     ROBOT_RADIUS,
     Angle,
-    Box,
     Count,
-    Cylinder,
     Flag,
     Length,
     Model,
     Number,
-    Obstacle,
     Point,
 )
+from fuzzyq_bullet.scenario.layouts import AnyLayout, Random
+from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
 Drive: TypeAlias = Literal["wheels", "kinematic"]
 OutcomeName: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]

@@ -12,7 +12,7 @@ from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.film import Patch
 from fuzzyq_bullet.video.marks import began, cross, diamond, grid_step, left_off
-from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, extent, footprint
+from fuzzyq_bullet.video.outline import arrow, clipped, corners_for
 from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed
 from fuzzyq_bullet.video.style import MAP
 from fuzzyq_bullet.video.timeline import Steady
@@ -124,7 +124,7 @@ class Map:
         seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
         wall = self._avoidance.wall(group)
         parts = [
-            self.spot(clipped(footprint(one, corners_for(extent(one) * self._scale)), seen))
+            self.spot(clipped(one.outline(corners_for(one.extent() * self._scale)), seen))
             for one in self._avoidance.members(group)
         ]
 
@@ -156,7 +156,7 @@ class Map:
         obstacle = trajectory.scenario.obstacles[hit.obstacle]
         x0, y0, x1, y1 = self._area
         seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
-        outline = footprint(obstacle, corners_for(extent(obstacle) * self._scale))
+        outline = obstacle.outline(corners_for(obstacle.extent() * self._scale))
         return self.spot(clipped(outline, seen))
 
     def _background(self, trajectory: Trajectory) -> Image.Image:
@@ -186,9 +186,9 @@ class Map:
         def obstacles(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
             for obstacle in scenario.obstacles:
                 x, y = obstacle.position
-                r = extent(obstacle)
+                r = obstacle.extent()
                 if x + r > x0 and x - r < x1 and y + r > y0 and y - r < y1:
-                    outline = footprint(obstacle, corners_for(r * self._scale))
+                    outline = obstacle.outline(corners_for(r * self._scale))
                     pen.polygon(at(self.spot(clipped(outline, seen))), fill=255)
 
         def walls(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:

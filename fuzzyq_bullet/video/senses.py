@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.film import Patch
-from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, corridor, extent, footprint
+from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, corridor
 from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed, sensed_at, sensor_range
 from fuzzyq_bullet.video.solids import walls_of
 from fuzzyq_bullet.video.story import is_clear
@@ -50,7 +50,7 @@ class Senses:
         self._obstacles = scenario.obstacles
         self._outlines: dict[int, Floats] = {}
         self._centres = np.array([o.position for o in scenario.obstacles]).reshape(-1, 2)
-        self._extents = np.array([extent(o) for o in scenario.obstacles])
+        self._extents = np.array([o.extent() for o in scenario.obstacles])
         everywhere = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * 1e4
         self._walls = walls_of(scenario, everywhere)
         self._image = paint.card(SENSES, "1  SENSES")
@@ -133,7 +133,7 @@ class Senses:
     def _outline(self, index: int) -> Floats:
         if index not in self._outlines:
             corners = corners_for(float(self._extents[index]) * self._scale)
-            self._outlines[index] = footprint(self._obstacles[index], corners)
+            self._outlines[index] = self._obstacles[index].outline(corners)
         return self._outlines[index]
 
     def _write_numbers(self, image: Image.Image, index: int) -> None:

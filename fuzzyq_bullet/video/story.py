@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
-from fuzzyq_bullet.scenario.models import Cylinder
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
@@ -83,9 +82,8 @@ def struck(trajectory: Trajectory) -> str:
     if hit.obstacle < 0:
         return "a wall"
     obstacle = trajectory.scenario.obstacles[hit.obstacle]
-    kind = "cylinder" if isinstance(obstacle, Cylinder) else "box"
     x, y = (round(v, 1) + 0.0 for v in obstacle.position)
-    return f"the {kind} at ({x:.1f}, {y:.1f})".replace("-", "−")
+    return f"the {obstacle.shape} at ({x:.1f}, {y:.1f})".replace("-", "−")
 
 
 def _turn(trajectory: Trajectory, index: int) -> float:

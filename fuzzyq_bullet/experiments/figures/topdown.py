@@ -16,7 +16,7 @@ from matplotlib.patches import Circle, Polygon
 
 from fuzzyq_bullet.planning.base import MODES
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle
-from fuzzyq_bullet.video.outline import arrow, footprint
+from fuzzyq_bullet.video.outline import arrow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -134,7 +134,7 @@ def _shape(obstacle: Obstacle, struck: bool) -> Patch:
         "linewidth": 2.2 if struck else 0.6,
         "zorder": 2.5 if struck else 2.0,
     }
-    return Polygon(footprint(obstacle, _CORNERS), **look)
+    return Polygon(obstacle.outline(_CORNERS), **look)
 
 
 def modes_by_tick(trajectory: Trajectory) -> NDArray[np.int64]:

@@ -10,8 +10,8 @@ from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.errors import PlannerError
 from fuzzyq_bullet.experiments.sweep.jobs import Job
 from fuzzyq_bullet.experiments.sweep.rows import Row
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.metrics import result_of
-from fuzzyq_bullet.oracle import feasible
 from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.trajectory import Trajectory
 

@@ -9,9 +9,10 @@ import numpy as np
 from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout
-from fuzzyq_bullet.scenario.layouts.placing import DECIMALS, is_clear, leaves_a_way
-from fuzzyq_bullet.scenario.shapes import MAX_OBSTACLES, MIN_RADIUS, ROBOT_RADIUS, Box, Number
+from fuzzyq_bullet.quantities import DECIMALS, MAX_OBSTACLES, MIN_RADIUS, ROBOT_RADIUS, Number
+from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout, register_layout
+from fuzzyq_bullet.scenario.layouts.placing import is_clear, leaves_a_way
+from fuzzyq_bullet.shapes import Box
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +28,7 @@ _ROUNDING = 2e-4
 """Farthest that a wall moves (m) when it becomes one with others and is rounded again."""
 
 
+@register_layout
 class Maze(Layout):
     """A maze that fills the arena.
 

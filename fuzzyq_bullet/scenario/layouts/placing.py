@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.scenario.shapes import ROBOT_RADIUS, TOUCH, Box, Obstacle
+from fuzzyq_bullet.quantities import ROBOT_RADIUS, TOUCH
+from fuzzyq_bullet.shapes import Obstacle
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.geometry import Floats
     from fuzzyq_bullet.scenario.models import Scenario
 
-DECIMALS = 4
 _STEP = 0.05
 """Distance of the places (m) among which ``leaves_a_way`` looks for one, in a usual arena."""
 _MOST_PLACES = 250_000
@@ -39,22 +39,26 @@ def is_clear(scenario: Scenario, obstacles: Sequence[Obstacle], margin: float) -
     return all(field.nearest(centre)[1] > radius for centre, radius in kept_clear(scenario, margin))
 
 
-def corners(box: Box) -> Floats:
-    """Return the corners of a box, shape (4, 2), anticlockwise (m)."""
-    cos, sin = math.cos(box.yaw), math.sin(box.yaw)
-    half = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * np.array(box.size) / 2
-    placed: Floats = np.array(box.position) + half @ np.array([[cos, sin], [-sin, cos]])
-    return placed
-
-
 def is_inside(obstacle: Obstacle, size: tuple[float, float]) -> bool:
     """Tell whether an obstacle lies wholly within an arena of that size (m)."""
-    if isinstance(obstacle, Box):
-        points, reach = corners(obstacle), 0.0
-    else:
-        points, reach = np.array([obstacle.position]), obstacle.radius
+    points, reach = obstacle.corners()
     low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
     return bool(np.all(low >= -TOUCH) and np.all(high <= np.array(size) + TOUCH))
+
+
+def separated(first: Floats, second: Floats) -> bool:
+    """Tell whether two convex polygons, shape (K, 2), share no more than an edge (exactly)."""
+    return _lies_beyond(first, second) or _lies_beyond(second, first)
+
+
+def _lies_beyond(first: Floats, second: Floats) -> bool:
+    """Tell whether all of the second lies beyond some side of the first, or beyond its opposite."""
+    for side in np.roll(first, -1, axis=0) - first:
+        across = np.array([-side[1], side[0]])
+        along, other = first @ across, second @ across
+        if other.min() >= along.max() or other.max() <= along.min():
+            return True
+    return False
 
 
 def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:

@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import dijkstra
 
 import fuzzyq_bullet
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.oracle import GRAZE, Route, feasible, shortest_path, spl
+from fuzzyq_bullet.ground_truth import GRAZE, Route, feasible, shortest_path, spl
 from fuzzyq_bullet.scenario import Scenario, realise
 
 EXACT = 1e-9
@@ -422,10 +422,10 @@ def test_spl_is_the_share_of_the_driven_path_that_was_needed():
 def test_nothing_that_drives_or_plans_can_reach_it():
     code = (
         "import sys, fuzzyq_bullet.episode, fuzzyq_bullet.planning, fuzzyq_bullet.drives\n"
-        "sys.exit(any(name.startswith('fuzzyq_bullet.oracle') for name in sys.modules))"
+        "sys.exit(any(name.startswith('fuzzyq_bullet.ground_truth') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
     root = Path(fuzzyq_bullet.__file__).parent
     for room in ("planning", "learning", "drives", "physics", "scenario", "episode.py"):
         files = [root / room] if room.endswith(".py") else (root / room).rglob("*.py")
-        assert not [f for f in files if "oracle" in f.read_text(encoding="utf-8")]
+        assert not [f for f in files if "ground_truth" in f.read_text(encoding="utf-8")]

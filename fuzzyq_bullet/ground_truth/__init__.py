@@ -18,10 +18,11 @@ import math
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.oracle.route import Route
-from fuzzyq_bullet.oracle.search import is_connected, shortest_route
-from fuzzyq_bullet.oracle.world import GRAZE, GrownWorld
+from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
+from fuzzyq_bullet.ground_truth.search import is_connected, shortest_route
+from fuzzyq_bullet.ground_truth.tangent_graph import Route
 from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle, Point, Scenario
+from fuzzyq_bullet.shapes import GRAZE
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -109,7 +110,7 @@ def _route(
     goal_radius: float,
     radius: float,
 ) -> Route | None:
-    return shortest_route(GrownWorld.of(obstacles, walls, radius), start, goal, goal_radius)
+    return shortest_route(ConfigurationSpace.of(obstacles, walls, radius), start, goal, goal_radius)
 
 
 @lru_cache(maxsize=_REMEMBERED)
@@ -121,7 +122,7 @@ def _is_feasible(
     goal_radius: float,
     radius: float,
 ) -> bool:
-    return is_connected(GrownWorld.of(obstacles, walls, radius), start, goal, goal_radius)
+    return is_connected(ConfigurationSpace.of(obstacles, walls, radius), start, goal, goal_radius)
 
 
 __all__ = ["GRAZE", "Route", "feasible", "shortest_path", "spl"]
