@@ -23,7 +23,6 @@ TOUCH = 1e-6
 """Things closer than this (m) touch, and the physics counts a touch as a collision."""
 DECIMALS = 4
 """Drawn coordinates are rounded to so many decimals of a metre."""
-ROBOT_RADIUS = 0.2
 
 
 class Model(BaseModel):

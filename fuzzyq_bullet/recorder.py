@@ -12,7 +12,7 @@ from fuzzyq_bullet.drives import Driver
 from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import MODES, Decision
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.trajectory import Decisions, Floats, Outcome, Ticks, Trajectory
 from fuzzyq_bullet.version import __version__
 
@@ -53,7 +53,7 @@ def recorded(
             speed=ticks[:, 4],
             turn_rate=ticks[:, 5],
             wheel_speeds=ticks[:, 6:8],
-            clearance=_clearance(field, ticks[:, 1:3], scenario.drive) - ROBOT_RADIUS,
+            clearance=_clearance(field, ticks[:, 1:3], scenario.drive) - scenario.robot.radius,
         ),
         decisions=Decisions(
             tick=np.array([tick for tick, _ in decisions], dtype=np.int64),

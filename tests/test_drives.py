@@ -19,8 +19,8 @@ from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import TIME_STEP
 from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
+from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
-    ROBOT_RADIUS,
     Arena,
     Box,
     Cylinder,
@@ -125,7 +125,7 @@ def test_nothing_is_foreseen_to_be_missed_that_the_robot_would_touch(
     headings += quicker * limits.turn_acceleration * middles**2 / 2.0
     x, y = (speeds * np.cos(headings) * dt).sum(), (speeds * np.sin(headings) * dt).sum()
     # A post that it then touches, wherever on its rim.
-    reach = ROBOT_RADIUS + 0.1
+    reach = FUZZYQ.radius + 0.1
     post = (x + reach * math.cos(beside), y + reach * math.sin(beside), 0.1)
     tick = Tick(0.0, 0.0, 0.0, heading, speed, turn_rate, 0.0, 0.0)
     assert Foresight(Field(np.array([post])), limits).free_steps(tick, 36) * TIME_STEP <= when

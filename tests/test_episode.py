@@ -19,8 +19,8 @@ from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.physics.sight import Sight
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
+from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
-    ROBOT_RADIUS,
     Arena,
     Box,
     Cylinder,
@@ -61,7 +61,7 @@ def ahead_of(trajectory):
     ticks = trajectory.ticks
     return np.array(
         [
-            field.free_distance(position, [heading], ROBOT_RADIUS, 5.0)[0]
+            field.free_distance(position, [heading], FUZZYQ.radius, 5.0)[0]
             for position, heading in zip(ticks.position, ticks.heading, strict=True)
         ]
     )
@@ -194,7 +194,7 @@ def test_while_no_touch_is_foreseen_the_robot_stays_clear_of_everything(monkeypa
             _, contact = advance(self, 1, apart=apart - taken + 1)
             if promised[0] > 0:
                 state = self.robot.state()
-                clear.append(self.field.clearance([(state.x, state.y)])[0] - ROBOT_RADIUS)
+                clear.append(self.field.clearance([(state.x, state.y)])[0] - FUZZYQ.radius)
             promised[0] -= 1
             if contact is not None:
                 return taken, contact
@@ -294,7 +294,7 @@ def test_the_kinematic_touch_is_swept_and_not_only_looked_for_at_the_end():
 @pytest.mark.parametrize("gap", [0.02, 0.21, 0.38, 0.399])
 def test_a_step_a_little_longer_than_what_is_free_ends_at_the_touch(gap):
     start = Start(position=(2.0, 2.5))
-    obstacles = (cylinder(2.0 + 2.0 * ROBOT_RADIUS + gap, 2.5),)
+    obstacles = (cylinder(2.0 + 2.0 * FUZZYQ.radius + gap, 2.5),)
     task = realise(scenario(drive="kinematic", start=start, obstacles=obstacles))
     with Sight(task.obstacles, task.arena) as world:
         trajectory = run_in(world, task, Onward())

@@ -8,10 +8,10 @@ import pytest
 from fuzzyq_bullet.drives.pilot import STILL, Twist, ramp
 from fuzzyq_bullet.drives.wheels import COMMAND_STEPS
 from fuzzyq_bullet.physics.engine import TIME_STEP
-from fuzzyq_bullet.physics.robot import wheel_commands
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.resources import asset
-from fuzzyq_bullet.scenario import ROBOT_RADIUS, Arena, Robot
+from fuzzyq_bullet.robots import FUZZYQ
+from fuzzyq_bullet.scenario import Arena, Robot
 
 LIMITS = Robot()
 
@@ -31,7 +31,7 @@ def drive(world, wanted_at, seconds):
         if step % COMMAND_STEPS == 0:
             wanted = wanted_at(step * TIME_STEP, path, heading - 0.3, now)
             now = ramp(now, wanted, LIMITS, COMMAND_STEPS * TIME_STEP)
-            world.robot.command(*wheel_commands(*now))
+            world.robot.command(*FUZZYQ.wheel_commands(*now))
         world.advance(1)
         half = heading + now.turn_rate * TIME_STEP / 2
         x += now.speed * math.cos(half) * TIME_STEP
@@ -105,7 +105,7 @@ def test_it_keeps_its_limits_of_acceleration(world):
     for step in range(240):
         if step % COMMAND_STEPS == 0:
             now = ramp(now, Twist(0.6, 0.0), LIMITS, COMMAND_STEPS * TIME_STEP)
-            world.robot.command(*wheel_commands(*now))
+            world.robot.command(*FUZZYQ.wheel_commands(*now))
         world.advance(1)
         speeds.append(world.robot.state().speed)
     gained = np.diff(speeds[::24]) / (24 * TIME_STEP)
@@ -137,4 +137,4 @@ def test_another_reader_sees_the_same_robot():
     assert robot.base_link == "chassis"
     assert set(robot.actuated_joint_names) == {"left_axle", "right_axle"}
     [body] = robot.link_map["chassis"].collisions
-    assert body.geometry.cylinder.radius == ROBOT_RADIUS
+    assert body.geometry.cylinder.radius == FUZZYQ.radius

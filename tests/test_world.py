@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.lines import SPREAD
-from fuzzyq_bullet.physics.robot import wheel_commands
-from fuzzyq_bullet.physics.world import CLEARANCE_RANGE, SENSOR_MARGIN, SENSOR_RANGE, World
-from fuzzyq_bullet.scenario import MIN_RADIUS, ROBOT_RADIUS, Arena, Box, Cylinder
+from fuzzyq_bullet.physics.world import CLEARANCE_RANGE, SENSOR_MARGIN, World
+from fuzzyq_bullet.robots import FUZZYQ
+from fuzzyq_bullet.scenario import MIN_RADIUS, Arena, Box, Cylinder
 
 FIELD = Arena(size=(6.0, 6.0))
 
@@ -34,7 +34,7 @@ def box(x, y, length, width, yaw=0.0):
 
 def run_into(world, x, y, heading, speed=0.3, steps=2000):
     world.robot.place(x, y, heading)
-    world.robot.command(*wheel_commands(speed, 0.0))
+    world.robot.command(*FUZZYQ.wheel_commands(speed, 0.0))
     return world.advance(steps)
 
 
@@ -70,7 +70,7 @@ def test_walls_stand_on_the_edges_and_only_where_they_are_wanted(engine):
         assert contact.body == world.walls
         state = world.robot.state()
         gaps = [state.x, state.y, 6.0 - state.x, 6.0 - state.y]
-        assert min(gaps) == pytest.approx(ROBOT_RADIUS, abs=0.005)
+        assert min(gaps) == pytest.approx(FUZZYQ.radius, abs=0.005)
     open_world = World([], Arena(size=(6.0, 6.0), walls=False), engine=engine)
     _, contact = run_into(open_world, 3.0, 3.0, 0.0, speed=0.6, steps=2400)
     assert contact is None
@@ -104,7 +104,7 @@ def test_wheels_and_ground_are_no_contact(engine):
 @pytest.mark.parametrize("far", [0.01, 0.1, 0.5, 1.2])
 def test_clearance_is_the_distance_between_the_surfaces(engine, far):
     world = World([cylinder(3.0, 3.0), box(1.0, 1.0, 0.4, 0.4, 0.7)], FIELD, engine=engine)
-    x = 3.0 + 0.2 + ROBOT_RADIUS + far
+    x = 3.0 + 0.2 + FUZZYQ.radius + far
     world.robot.place(x, 3.0, 1.0)
     assert world.clearance(x, 3.0) == pytest.approx(far, abs=0.002)
 
@@ -133,15 +133,15 @@ obstacle = st.one_of(
 )
 def test_a_line_is_never_longer_than_the_way_to_contact(engine, obstacles, origin, heading):
     field = Field.of(obstacles, FIELD)
-    if field.clearance([origin])[0] < ROBOT_RADIUS + 0.001:  # it touches something already
+    if field.clearance([origin])[0] < FUZZYQ.radius + 0.001:  # it touches something already
         return
     world = World(obstacles, FIELD, engine=engine)
     headings = heading + np.linspace(0.0, 6.0, 12)
     sensed = np.array(world.sense(origin, headings))
-    truth = field.free_distance(origin, headings, ROBOT_RADIUS, SENSOR_RANGE)
+    truth = field.free_distance(origin, headings, FUZZYQ.radius, FUZZYQ.sensor_range)
     assert (sensed <= truth + SENSOR_MARGIN).all()
     assert (sensed >= 0.0).all()
-    assert (sensed <= SENSOR_RANGE).all()
+    assert (sensed <= FUZZYQ.sensor_range).all()
 
 
 def test_lines_agree_with_exact_geometry_on_random_worlds(engine):
@@ -156,17 +156,17 @@ def test_lines_agree_with_exact_geometry_on_random_worlds(engine):
         ]
         field = Field.of(obstacles, FIELD)
         world = World(obstacles, FIELD, engine=engine)
-        wide = ROBOT_RADIUS + SENSOR_MARGIN
+        wide = FUZZYQ.radius + SENSOR_MARGIN
         for origin in rng.uniform(0.25, 5.75, (60, 2)):
             if field.clearance([origin])[0] < wide:
                 continue
             headings = rng.uniform(-math.pi, math.pi, 9)
-            truth = field.free_distance(origin, headings, wide, SENSOR_RANGE)
-            met = truth < SENSOR_RANGE  # a free line is right of itself and proves nothing
+            truth = field.free_distance(origin, headings, wide, FUZZYQ.sensor_range)
+            met = truth < FUZZYQ.sensor_range  # a free line is right of itself and proves nothing
             errors.append(np.abs(world.sense(tuple(origin), headings) - truth)[met])
     errors = np.concatenate(errors)
     assert errors.size > 1000
-    assert np.median(errors) <= 0.01 * SENSOR_RANGE
+    assert np.median(errors) <= 0.01 * FUZZYQ.sensor_range
 
 
 def test_nothing_of_the_least_width_slips_between_two_rays(engine):
@@ -176,7 +176,7 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
             world = World([shape(3.0 + lateral)], FIELD, engine=engine)
             [ahead] = world.sense((2.0, 3.0), [0.0])
             assert ahead < 0.5
-    offsets = (ROBOT_RADIUS + SENSOR_MARGIN) * np.concatenate([-SPREAD[::-1], SPREAD])
+    offsets = (FUZZYQ.radius + SENSOR_MARGIN) * np.concatenate([-SPREAD[::-1], SPREAD])
     assert np.diff(offsets).max() < least
 
 
@@ -185,8 +185,8 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
 def test_what_stands_beside_the_robot_does_not_stop_it(engine, side, length):
     # 1 cm beside its way, inside the margin of the line: it may go on, the geometry says so.
     world = World([box(3.0, 3.0 + side * 0.5, length, 1.0)], FIELD, engine=engine)
-    [along] = world.sense((3.0, 3.0 - side * (ROBOT_RADIUS + 0.01)), [0.0])
-    assert along == SENSOR_RANGE
+    [along] = world.sense((3.0, 3.0 - side * (FUZZYQ.radius + 0.01)), [0.0])
+    assert along == FUZZYQ.sensor_range
 
 
 def test_who_knows_that_nothing_stands_beside_the_robot_is_told_the_same_by_fewer_rays(engine):
@@ -202,7 +202,7 @@ def test_who_knows_that_nothing_stands_beside_the_robot_is_told_the_same_by_fewe
         field = Field.of(obstacles, FIELD)
         world = World(obstacles, FIELD, engine=engine)
         for origin in rng.uniform(0.2, 5.8, (200, 2)).tolist():
-            apart = field.clearance([origin])[0] - ROBOT_RADIUS
+            apart = field.clearance([origin])[0] - FUZZYQ.radius
             if apart < 0.0:
                 continue
             headings = rng.uniform(-math.pi, math.pi, 4).tolist()
@@ -221,13 +221,13 @@ def test_it_is_the_same_beside_the_corner_of_something_huge(engine):
     obstacles = [box(-45.0, -45.0, 100.0, 100.0), box(205.0, 205.0, 1.0, 1.0)]
     world = World(obstacles, Arena(size=(300.0, 300.0), walls=False), engine=engine)
     for origin, heading in (((5.2253, 5.0141), 1.635), ((5.0141, 5.2253), -0.064)):
-        apart = world.field.clearance([origin])[0] - ROBOT_RADIUS
+        apart = world.field.clearance([origin])[0] - FUZZYQ.radius
         assert 0.025 < apart < 0.05
         assert world.sense(origin, [heading], apart=apart) == world.sense(origin, [heading])
     rng = np.random.default_rng(5)
     for away, angle in rng.uniform((0.22, -0.5), (0.26, 2.0), (400, 2)):
         origin = (5.0 + away * math.cos(angle), 5.0 + away * math.sin(angle))
-        apart = world.field.clearance([origin])[0] - ROBOT_RADIUS
+        apart = world.field.clearance([origin])[0] - FUZZYQ.radius
         headings = rng.uniform(-math.pi, math.pi, 6).tolist()
         assert world.sense(origin, headings, apart=apart) == world.sense(origin, headings)
 
@@ -270,7 +270,7 @@ def test_ten_thousand_obstacles_are_all_sensed(engine):
     for index in (0, 99, 4321, 9999):
         x, y = grid[index].position
         [ahead] = world.sense((x - 0.9, y), [0.0])
-        assert ahead == pytest.approx(0.9 - 0.2 - ROBOT_RADIUS - SENSOR_MARGIN, abs=0.01)
+        assert ahead == pytest.approx(0.9 - 0.2 - FUZZYQ.radius - SENSOR_MARGIN, abs=0.01)
 
 
 def test_an_engine_is_closed_once_and_for_all():

@@ -9,7 +9,7 @@ from fuzzyq_bullet.drives.base import Tick
 from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import TIME_STEP
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Robot
+from fuzzyq_bullet.scenario.models import Robot
 
 SLACK = 0.002
 """By how much bodies may be nearer to each other in the physics than they are drawn (m): they have
@@ -72,4 +72,4 @@ class Foresight:
         return self._clearance(x, y) >= speed * span / 2.0 + strays
 
     def _clearance(self, x: float, y: float) -> float:
-        return self._near.clearance(x, y) - ROBOT_RADIUS - SLACK
+        return self._near.clearance(x, y) - self._limits.radius - SLACK

@@ -8,9 +8,9 @@ from fuzzyq_bullet.drives.apart import Apart
 from fuzzyq_bullet.drives.base import Tick, longest_step_time
 from fuzzyq_bullet.drives.nearby import Nearby
 from fuzzyq_bullet.drives.sensor import CastOnce
-from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
+from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, Sight
 from fuzzyq_bullet.planning.base import Decision, Observation
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Robot, Scenario
+from fuzzyq_bullet.scenario.models import Robot, Scenario
 from fuzzyq_bullet.trajectory import Collision
 
 STEP_TIME = longest_step_time(Robot())
@@ -32,7 +32,8 @@ class KinematicDriver:
         self._field = field = world.field
         self._goal = scenario.goal
         near = Nearby(field)
-        self._apart = Apart(lambda x, y: near.clearance(x, y) - ROBOT_RADIUS)
+        self._radius = radius = scenario.robot.radius
+        self._apart = Apart(lambda x, y: near.clearance(x, y) - radius)
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
@@ -53,8 +54,8 @@ class KinematicDriver:
             turn_rate=0.0,
             goal=self._goal.position,
             goal_radius=self._goal.radius,
-            range=SENSOR_RANGE,
-            radius=ROBOT_RADIUS + SENSOR_MARGIN,
+            range=self._world.model.sensor_range,
+            radius=self._radius + SENSOR_MARGIN,
             sense=sensor,
             look=sensor.look,
         )
@@ -67,7 +68,7 @@ class KinematicDriver:
         # What is farther away cannot stop the robot.
         if step >= self._apart.by(now.x, now.y, step + ROUNDING) - ROUNDING:
             [free] = self._field.free_distance(
-                (now.x, now.y), decision.heading, ROBOT_RADIUS, step
+                (now.x, now.y), decision.heading, self._radius, step
             ).tolist()
         hit = free < step
         moved = min(step, free)

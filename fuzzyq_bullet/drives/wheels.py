@@ -10,10 +10,9 @@ from fuzzyq_bullet.drives.foresight import Foresight
 from fuzzyq_bullet.drives.pilot import STILL, Pilot, Twist, ramp
 from fuzzyq_bullet.drives.sensor import CastOnce
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
-from fuzzyq_bullet.physics.robot import wheel_commands
-from fuzzyq_bullet.physics.world import SENSOR_MARGIN, SENSOR_RANGE, World
+from fuzzyq_bullet.physics.world import SENSOR_MARGIN, World
 from fuzzyq_bullet.planning.base import Decision, Motion, Observation
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.trajectory import Collision
 
 COMMAND_STEPS = 3
@@ -42,7 +41,7 @@ class WheelsDriver:
             acceleration=scenario.robot.acceleration,
             turn_acceleration=scenario.robot.turn_acceleration,
             period=DECISION_TICKS * TICK_TIME,
-            radius=ROBOT_RADIUS,
+            radius=scenario.robot.radius,
             margin=SENSOR_MARGIN,
         )
         self._pilot = Pilot(scenario.robot, TICK_TIME)
@@ -69,8 +68,8 @@ class WheelsDriver:
             turn_rate=now.turn_rate,
             goal=self._goal.position,
             goal_radius=self._goal.radius,
-            range=SENSOR_RANGE,
-            radius=ROBOT_RADIUS + SENSOR_MARGIN,
+            range=self._world.model.sensor_range,
+            radius=self._limits.radius + SENSOR_MARGIN,
             sense=sensor,
             look=sensor.look,
             motion=self._motion,
@@ -124,7 +123,7 @@ class WheelsDriver:
             if now != wanted:
                 stride = min(COMMAND_STEPS, left)
                 self._twist = now = ramp(now, wanted, limits, stride * TIME_STEP)
-                world.robot.command(*wheel_commands(*now))
+                world.robot.command(*world.model.wheel_commands(*now))
             taken, contact = world.advance(stride, apart=apart)
             self.steps += taken
             if contact is not None:

@@ -10,7 +10,7 @@ from fuzzyq_bullet.experiments.timing import interleaved
 from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
 from fuzzyq_bullet.ground_truth.search import shortest_route
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
-from fuzzyq_bullet.scenario import ROBOT_RADIUS, Limits, Scenario, random_task, realise
+from fuzzyq_bullet.scenario import Limits, Scenario, random_task, realise
 
 SEEDS = range(2, 6)
 """Fields of one count that are driven through in turn; among 125 obstacles all need ways out."""
@@ -76,7 +76,7 @@ def _driving(fields: list[Scenario]) -> Callable[[], object]:
 
 def _asking(field: Scenario) -> Callable[[], object]:
     def work() -> object:
-        world = ConfigurationSpace.of(field.obstacles, field.arena.size, ROBOT_RADIUS)
+        world = ConfigurationSpace.of(field.obstacles, field.arena.size, field.robot.radius)
         goal = field.goal
         return shortest_route(world, field.start.position, goal.position, goal.radius)
 

@@ -103,14 +103,19 @@ class Engine:
         return body
 
     def load_text(
-        self, urdf: str, meshes: Mapping[str, str] | None = None, *, fixed: bool = True
+        self,
+        urdf: str,
+        meshes: Mapping[str, str] | None = None,
+        *,
+        fixed: bool = True,
+        visible: bool = False,
     ) -> int:
         """Load a body from the text of a URDF, and of the mesh files beside it; return its id."""
         with tempfile.TemporaryDirectory(prefix="fuzzyq-") as folder:
             path = Path(folder) / "body.urdf"
             for name, text in {"body.urdf": urdf, **(meshes or {})}.items():
                 (path.parent / name).write_text(text)
-            return self.load(path, fixed=fixed)
+            return self.load(path, fixed=fixed, visible=visible)
 
     def close(self) -> None:
         """Disconnect the client; a second call does nothing."""

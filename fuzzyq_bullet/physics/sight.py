@@ -14,13 +14,11 @@ from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.groups import Group
 from fuzzyq_bullet.physics.lines import LineBundle
-from fuzzyq_bullet.physics.robot import BODY_HEIGHT
 from fuzzyq_bullet.physics.sensing import meshes
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena
+from fuzzyq_bullet.robots import FUZZYQ, RobotModel
+from fuzzyq_bullet.scenario.models import Arena
 from fuzzyq_bullet.shapes import ROUNDNESS, Shape
 
-SENSOR_RANGE = 1.0
-"""Longest distance a detection line tells (m): 5·S_p."""
 SENSOR_MARGIN = 0.02
 """How much wider than the robot a detection line is, on either side (m)."""
 
@@ -44,6 +42,7 @@ class Sight:
         obstacles: All obstacles, already validated.
         arena: The rectangle, with or without walls.
         engine: An engine to build in, emptied first; by default a new one that is owned.
+        model: The robot that looks around.
 
     Attributes:
         obstacles: What it was built of.
@@ -59,14 +58,18 @@ class Sight:
         arena: Arena,
         *,
         engine: Engine | None = None,
+        model: RobotModel = FUZZYQ,
     ) -> None:
         self.obstacles, self.arena = tuple(obstacles), arena
+        self.model = model
         self.field = Field.of(obstacles, arena)
         self._owns_engine = engine is None
         self.engine = engine or Engine()
         self.engine.reset()
         self._api = self.engine.api
-        self._lines = LineBundle(ROBOT_RADIUS, SENSOR_MARGIN, SENSOR_RANGE, BODY_HEIGHT)
+        self._lines = LineBundle(
+            model.radius, SENSOR_MARGIN, model.sensor_range, model.sensor_height
+        )
         self.beside = _BESIDE + _BEYOND * max(
             (group.longest_face for group in self.field.groups), default=0.0
         )
@@ -84,7 +87,7 @@ class Sight:
                 that is told: rays that could meet nothing are not cast.
 
         Returns:
-            Free travel (m), one for each, in [0, ``SENSOR_RANGE``].
+            Free travel (m), one for each, in [0, ``model.sensor_range``].
         """
         probes = apart < self.beside
         start, stop = self._lines.rays(origin, headings, probes=probes)
@@ -101,15 +104,14 @@ class Sight:
             headings: World headings (rad), at least one and at most 1000.
 
         Returns:
-            Shape (K,), each in [0, ``SENSOR_RANGE + ROBOT_RADIUS + SENSOR_MARGIN``].
+            Shape (K,), each in [0, ``model.sensor_range`` + radius + margin].
         """
-        reach = SENSOR_RANGE + ROBOT_RADIUS + SENSOR_MARGIN
+        height = self.model.sensor_height
+        reach = self.model.sensor_range + self.model.radius + SENSOR_MARGIN
         x, y = origin
-        stop = [
-            (x + reach * math.cos(one), y + reach * math.sin(one), BODY_HEIGHT) for one in headings
-        ]
+        stop = [(x + reach * math.cos(one), y + reach * math.sin(one), height) for one in headings]
         hits = self._api.rayTestBatch(
-            [(x, y, BODY_HEIGHT)] * len(stop),
+            [(x, y, height)] * len(stop),
             stop,
             collisionFilterMask=_FACES,
             physicsClientId=self.engine.client,
@@ -154,6 +156,6 @@ class Sight:
         vertices.clear()
         triangles.clear()
         body: int = self._api.createMultiBody(
-            0.0, shape, basePosition=(0.0, 0.0, BODY_HEIGHT), physicsClientId=client
+            0.0, shape, basePosition=(0.0, 0.0, self.model.sensor_height), physicsClientId=client
         )
         return body

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.groups import Group
 from fuzzyq_bullet.physics.robot import Robot
-from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, SENSOR_RANGE, Sight
+from fuzzyq_bullet.physics.sight import SENSOR_MARGIN, Sight
 from fuzzyq_bullet.physics.static import obstacles_urdf, walls_urdf
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Arena
+from fuzzyq_bullet.scenario.models import Arena
 from fuzzyq_bullet.shapes import Shape
 
 CLEARANCE_RANGE = 2.0
@@ -24,6 +24,7 @@ class World(Sight):
         obstacles: All obstacles, already validated.
         arena: The rectangle, with or without walls.
         engine: An engine to build in, emptied first; by default a new one that the world owns.
+        model: The robot.
     """
 
     def _build(self, obstacles: Sequence[Shape], arena: Arena) -> None:
@@ -32,7 +33,7 @@ class World(Sight):
         self._obstacles = self.engine.load_text(*obstacles_urdf(obstacles)) if obstacles else None
         self.walls = self.engine.load_text(walls_urdf(arena)) if arena.walls else None
         super()._build(obstacles, arena)
-        self.robot = Robot(self.engine)
+        self.robot = Robot(self.engine, self.model)
         self._last_clearance = CLEARANCE_RANGE
         self._last_asked = (math.nan, math.nan)
 
@@ -88,7 +89,7 @@ class World(Sight):
         if not search <= CLEARANCE_RANGE:  # also when nothing was asked before
             search = CLEARANCE_RANGE
         width, depth = self.arena.size
-        near_wall = min(x, width - x, y, depth - y) - ROBOT_RADIUS <= search
+        near_wall = min(x, width - x, y, depth - y) - self.model.radius <= search
         nearest = math.inf
         for body in (self._obstacles, self.walls if near_wall else None):
             if body is not None:
@@ -107,4 +108,4 @@ class World(Sight):
         return ground
 
 
-__all__ = ["SENSOR_MARGIN", "SENSOR_RANGE", "TIME_STEP", "Group", "World"]
+__all__ = ["SENSOR_MARGIN", "TIME_STEP", "Group", "World"]

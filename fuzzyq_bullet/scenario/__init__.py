@@ -13,7 +13,6 @@ from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import (
     MAX_OBSTACLES,
     MIN_RADIUS,
-    ROBOT_RADIUS,
     Arena,
     Box,
     Cylinder,
@@ -35,7 +34,6 @@ from fuzzyq_bullet.scenario.schema import scenario_schema
 __all__ = [
     "MAX_OBSTACLES",
     "MIN_RADIUS",
-    "ROBOT_RADIUS",
     "Arena",
     "Box",
     "Cylinder",

@@ -15,7 +15,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.scenario.layouts.placing import separated
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle, Scenario
+from fuzzyq_bullet.scenario.models import Obstacle, Scenario
 from fuzzyq_bullet.scenario.problems import MAX_SHOWN, Loc, key_path
 
 Conflict: TypeAlias = tuple[Loc, str]
@@ -61,8 +61,13 @@ def _places(scenario: Scenario) -> list[Conflict]:
             found.append(
                 ((key, "position"), f"({x:g}, {y:g}) is outside the arena, {width:g} × {depth:g} m")
             )
-        elif scenario.arena.walls and gap <= ROBOT_RADIUS + TOUCH:
-            found.append(((key, "position"), f"is {gap:.3g} m from a wall; {_remedy(gap)}"))
+        elif scenario.arena.walls and gap <= scenario.robot.radius + TOUCH:
+            found.append(
+                (
+                    (key, "position"),
+                    f"is {gap:.3g} m from a wall; {_remedy(gap, scenario.robot.radius)}",
+                )
+            )
     apart = float(np.hypot(*np.subtract(scenario.start.position, scenario.goal.position)))
     if apart <= scenario.goal.radius:
         found.append(
@@ -76,14 +81,15 @@ def _places(scenario: Scenario) -> list[Conflict]:
 
 
 def _obstacles(scenario: Scenario) -> list[Conflict]:
-    field = Field.of(scenario.obstacles)
+    field, radius = Field.of(scenario.obstacles), scenario.robot.radius
     by_index: dict[int, Conflict] = {}
     for name, place in (("goal", scenario.goal), ("start", scenario.start)):
         x, y = place.position
         gaps = field.distances(place.position)
-        for i in np.flatnonzero(gaps <= ROBOT_RADIUS + TOUCH).tolist():
+        for i in np.flatnonzero(gaps <= radius + TOUCH).tolist():
             where = f"{-gaps[i]:.3g} m inside it" if gaps[i] < 0 else f"{gaps[i]:.3g} m from it"
-            message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; {_remedy(gaps[i])}"
+            message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; "
+            message += _remedy(gaps[i], radius)
             by_index[i] = (("obstacles", i), message)
     if scenario.arena.walls:
         width, depth = scenario.arena.size
@@ -113,7 +119,7 @@ def _is_outside(item: Obstacle, width: float, depth: float) -> bool:
     return separated(arena, item.outline())
 
 
-def _remedy(gap: float) -> str:
+def _remedy(gap: float, radius: float) -> str:
     """Say how far to move what leaves the robot's centre this gap (m), negative inside it."""
-    lacking = max(round(ROBOT_RADIUS - gap, 3), 0.001)
-    return f"the robot needs more than {ROBOT_RADIUS:g} m: move it by more than {lacking:g} m"
+    lacking = max(round(radius - gap, 3), 0.001)
+    return f"the robot needs more than {radius:g} m: move it by more than {lacking:g} m"

@@ -11,7 +11,15 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationError, ValidationInfo
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    SerializeAsAny,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
@@ -19,7 +27,6 @@ from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.quantities import (
     MAX_OBSTACLES,
     MIN_RADIUS,
-    ROBOT_RADIUS,
     Angle,
     Count,
     Flag,
@@ -28,6 +35,8 @@ from fuzzyq_bullet.quantities import (
     Number,
     Point,
 )
+from fuzzyq_bullet.robots import FUZZYQ, RobotModel, robot_model, robot_names
+from fuzzyq_bullet.robots.base import Acceleration, MaxSpeed, MaxTurnRate, TurnAcceleration
 from fuzzyq_bullet.scenario.layouts import AnyLayout, Random
 from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
@@ -61,21 +70,48 @@ class Goal(Model):
     )
 
 
-class Robot(Model):
-    """Limits of the robot's motion. Its shape is that of ``assets/robot.urdf``."""
+def _known_robot(name: str) -> str:
+    if name not in robot_names():
+        raise PydanticCustomError("unknown_robot", "must be one of {allowed}", {"allowed": name})
+    return name
 
-    max_speed: Annotated[Number, Field(ge=0.05, le=1.0)] = Field(
-        default=0.6, description="Greatest speed (m/s)."
+
+class Robot(Model):
+    """The robot, and limits of its motion: those of its model, where they are not given."""
+
+    model: Annotated[str, AfterValidator(_known_robot)] = Field(
+        default=FUZZYQ.name,
+        description="Which robot it is.",
+        json_schema_extra=lambda schema: schema.update(enum=list(robot_names())),
     )
-    max_turn_rate: Annotated[Number, Field(ge=0.2, le=3.0)] = Field(
-        default=2.0, description="Greatest turn rate (rad/s)."
+    max_speed: MaxSpeed = Field(default=FUZZYQ.max_speed, description="Greatest speed (m/s).")
+    max_turn_rate: MaxTurnRate = Field(
+        default=FUZZYQ.max_turn_rate, description="Greatest turn rate (rad/s)."
     )
-    acceleration: Annotated[Number, Field(ge=0.1, le=2.0)] = Field(
-        default=1.0, description="Greatest change of speed, up or down (m/s²)."
+    acceleration: Acceleration = Field(
+        default=FUZZYQ.acceleration, description="Greatest change of speed, up or down (m/s²)."
     )
-    turn_acceleration: Annotated[Number, Field(ge=0.5, le=10.0)] = Field(
-        default=6.0, description="Greatest change of the turn rate (rad/s²)."
+    turn_acceleration: TurnAcceleration = Field(
+        default=FUZZYQ.turn_acceleration, description="Greatest change of the turn rate (rad/s²)."
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_limits_of_its_model(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or data.get("model") not in robot_names():
+            return data
+        limits = robot_model(data["model"]).model_dump(include=set(cls.model_fields) - {"model"})
+        return {**limits, **data}
+
+    @property
+    def spec(self) -> RobotModel:
+        """Footprint, wheels, masses and URDF of the robot."""
+        return robot_model(self.model)
+
+    @property
+    def radius(self) -> float:
+        """Radius of the robot's footprint (m): the paper's unit S_p."""
+        return self.spec.radius
 
 
 class Limits(Model):
@@ -178,7 +214,6 @@ __all__ = [
     "ANY_PLANNER",
     "MAX_OBSTACLES",
     "MIN_RADIUS",
-    "ROBOT_RADIUS",
     "Angle",
     "Arena",
     "Box",

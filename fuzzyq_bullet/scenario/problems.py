@@ -13,6 +13,7 @@ from pydantic import BaseModel, ValidationError
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner_names, settings_for
 from fuzzyq_bullet.quantities import ANGLE_KEYS
 from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.robots import no_robot
 from fuzzyq_bullet.scenario.layouts import LAYOUTS
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.shapes import MOTIONS, SHAPES
@@ -104,6 +105,8 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
         return Problem((*loc, key), _refusal(f"no {key} {shorten(tag)}", tag, allowed))
     if kind == "unknown_planner":
         return Problem(loc, no_planner(value))
+    if kind == "unknown_robot":
+        return Problem(loc, no_robot(value))
     if kind == "literal_error":
         allowed = re.findall("'([^']*)'", context["expected"])
         return Problem(loc, _refusal(f"got {shorten(value)}", value, allowed))

@@ -13,7 +13,7 @@ from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.film import Patch
 from fuzzyq_bullet.video.marks import began, cross, diamond, grid_step, left_off
 from fuzzyq_bullet.video.outline import arrow, clipped, corners_for
-from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed
+from fuzzyq_bullet.video.sensing import Sensed
 from fuzzyq_bullet.video.style import MAP
 from fuzzyq_bullet.video.timeline import Steady
 from fuzzyq_bullet.video.viewpoint import extent_of
@@ -42,6 +42,7 @@ class Map:
         x0, y0, x1, y1 = extent_of(trajectory)
         width, height = MAP.size
         self._scale = min((width - 2 * _PADDING) / (x1 - x0), (height - 2 * _PADDING) / (y1 - y0))
+        self._radius = trajectory.scenario.robot.radius
         self._middle = ((x0 + x1) / 2, (y0 + y1) / 2)
         self._area = (x0, y0, x1, y1)
         positions = trajectory.ticks.position
@@ -68,7 +69,7 @@ class Map:
         self._sensed = sensed
         grown = paint.joined([self._trail.follow(moment.tick), self._decorate(moment.decision)])
         centre = self.spot([moment.position])[0]
-        radius = max(_LEAST_ROBOT, ROBOT_RADIUS * self._scale)
+        radius = max(_LEAST_ROBOT, self._radius * self._scale)
         strokes = [] if sensed is None else [self._line(sensed, *line) for line in sensed.lines]
         parts = [
             paint.box_around(
@@ -196,7 +197,7 @@ class Map:
 
         def start(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
             centre = self.spot([scenario.start.position])[0]
-            radius = max(5.0, ROBOT_RADIUS * self._scale)
+            radius = max(5.0, scenario.robot.radius * self._scale)
             pen.ellipse(at.disc(centre, radius), outline=255, width=2 * at.factor)
 
         goal_at = self.spot([scenario.goal.position])[0]

@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.film import Patch
 from fuzzyq_bullet.video.outline import arrow, clipped, corners_for, corridor
-from fuzzyq_bullet.video.sensing import ROBOT_RADIUS, Sensed, sensed_at, sensor_range
+from fuzzyq_bullet.video.sensing import Sensed, sensed_at, sensor_range
 from fuzzyq_bullet.video.solids import walls_of
 from fuzzyq_bullet.video.story import is_clear
 from fuzzyq_bullet.video.style import SENSES
@@ -43,8 +43,9 @@ class Senses:
     def __init__(self, trajectory: Trajectory) -> None:
         self._trajectory = trajectory
         self._decisions = trajectory.decisions
+        self._radius = trajectory.scenario.robot.radius
         self._range = sensor_range(trajectory)
-        self._view = self._range + ROBOT_RADIUS + 0.1
+        self._view = self._range + self._radius + 0.1
         self._scale = _DIAMETER * _FACTOR / 2 / self._view
         scenario = trajectory.scenario
         self._obstacles = scenario.obstacles
@@ -119,10 +120,10 @@ class Senses:
                 pen.polygon(outline, fill=(*colour, 90))
                 pen.line(outline, colour, 3 * _FACTOR // 2)
             way = np.array((math.cos(sensed.heading), math.sin(sensed.heading)))
-            tip = here + way * (ROBOT_RADIUS + 0.32)
+            tip = here + way * (self._radius + 0.32)
             pen.line(at(np.stack([here, tip])), style.TEXT, 3 * _FACTOR)
             pen.polygon(at(arrow((tip[0], tip[1]), sensed.heading, 0.2)), fill=style.TEXT)
-        centre, radius = side / 2, ROBOT_RADIUS * self._scale
+        centre, radius = side / 2, self._radius * self._scale
         pen.ellipse(
             (centre - radius, centre - radius, centre + radius, centre + radius), style.ROBOT
         )

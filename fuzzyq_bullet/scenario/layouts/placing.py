@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.quantities import ROBOT_RADIUS, TOUCH
+from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.shapes import Obstacle
 
 if TYPE_CHECKING:
@@ -28,8 +28,11 @@ _OUTSIDE = 2.0
 
 def kept_clear(scenario: Scenario, margin: float) -> list[tuple[tuple[float, float], float]]:
     """Return centres and radii (m) of the discs that drawn obstacles keep out of."""
-    goal = max(scenario.goal.radius, ROBOT_RADIUS)
-    discs = ((scenario.start.position, ROBOT_RADIUS), (scenario.goal.position, goal))
+    robot = scenario.robot.radius
+    discs = (
+        (scenario.start.position, robot),
+        (scenario.goal.position, max(scenario.goal.radius, robot)),
+    )
     return [(centre, radius + margin + 2 * TOUCH) for centre, radius in discs]
 
 
@@ -78,9 +81,17 @@ def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
     field = Field.of([*scenario.obstacles, *obstacles], scenario.arena)
     clearance = field.clearance(places.reshape(-1, 2)).reshape(len(xs), len(ys))
     # Half a step from either of two neighbours, that much clearance is left over.
-    regions, _ = label(clearance >= ROBOT_RADIUS + step / 2)
+    regions, _ = label(clearance >= scenario.robot.radius + step / 2)
     ends = [
-        _regions_at(np.array(place.position), field, places, clearance, regions, 3 * step)
+        _regions_at(
+            np.array(place.position),
+            scenario.robot.radius,
+            field,
+            places,
+            clearance,
+            regions,
+            3 * step,
+        )
         for place in (scenario.start, scenario.goal)
     ]
     return bool(ends[0] & ends[1])
@@ -88,6 +99,7 @@ def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
 
 def _regions_at(
     point: Floats,
+    radius: float,
     field: Field,
     places: Floats,
     clearance: Floats,
@@ -98,4 +110,4 @@ def _regions_at(
     apart = np.linalg.norm(places - point, axis=-1)
     # Along a line of length L between clearances a and b, it is nowhere less than (a + b − L) / 2.
     least = (clearance + field.clearance(point[None])[0] - apart) / 2
-    return set(np.unique(regions[(apart <= reach) & (regions > 0) & (least >= ROBOT_RADIUS)]))
+    return set(np.unique(regions[(apart <= reach) & (regions > 0) & (least >= radius)]))

@@ -22,7 +22,6 @@ from fuzzyq_bullet.quantities import (
     DECIMALS,
     MAX_OBSTACLES,
     MIN_RADIUS,
-    ROBOT_RADIUS,
     TOUCH,
     Count,
     Flag,
@@ -120,9 +119,10 @@ def _draw(scenario: Scenario, wanted: Random, rng: np.random.Generator) -> Float
     low, high = np.minimum(r, size / 2), np.maximum(size - r, size / 2)
     drawn = rng.uniform(low, high, (_BATCH, 2)).round(DECIMALS)
     fits = np.all((drawn >= r - TOUCH) & (drawn <= size - r + TOUCH), axis=1)
+    robot = scenario.robot.radius
     kept_clear = (
-        (scenario.start.position, ROBOT_RADIUS),
-        (scenario.goal.position, max(scenario.goal.radius, ROBOT_RADIUS)),
+        (scenario.start.position, robot),
+        (scenario.goal.position, max(scenario.goal.radius, robot)),
     )
     for centre, radius in kept_clear:
         apart = np.linalg.norm(drawn - centre, axis=1)
