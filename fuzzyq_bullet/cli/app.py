@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzyq_bullet.cli import bench, check, explain, figure, replay, report, run, scenarios, train
+from fuzzyq_bullet.cli import (
+    bench,
+    check,
+    explain,
+    figure,
+    import_map,
+    replay,
+    report,
+    run,
+    scenarios,
+    train,
+)
 from fuzzyq_bullet.cli.words import help_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
@@ -34,6 +45,7 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 _add("run", run.run)
 _add("replay", replay.replay)
 _add("check", check.check)
+_add("import", import_map.import_map)
 _add("validate", scenarios.validate)
 _add("schema", scenarios.schema)
 _add("list", scenarios.list_scenarios)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.experiments.timing import interleaved
+from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
 from fuzzyq_bullet.ground_truth.search import shortest_route
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
@@ -76,7 +77,7 @@ def _driving(fields: list[Scenario]) -> Callable[[], object]:
 
 def _asking(field: Scenario) -> Callable[[], object]:
     def work() -> object:
-        world = ConfigurationSpace.of(field.obstacles, field.arena.size, field.robot.radius)
+        world = ConfigurationSpace(Field.of(field.obstacles, field.arena), field.robot.radius)
         goal = field.goal
         return shortest_route(world, field.start.position, goal.position, goal.radius)
 

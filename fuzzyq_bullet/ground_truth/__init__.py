@@ -18,18 +18,17 @@ import math
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
 from fuzzyq_bullet.ground_truth.search import is_connected, shortest_route
 from fuzzyq_bullet.ground_truth.tangent_graph import Route
-from fuzzyq_bullet.scenario.models import Obstacle, Point, Scenario
+from fuzzyq_bullet.scenario.models import Arena, Obstacle, Point, Scenario
 from fuzzyq_bullet.shapes import GRAZE
 
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    Key: TypeAlias = tuple[
-        tuple[Obstacle, ...], tuple[float, float] | None, Point, Point, float, float
-    ]
+    Key: TypeAlias = tuple[tuple[Obstacle, ...], Arena, Point, Point, float, float]
 
 _REMEMBERED = 128
 """Worlds whose answers are kept: a sweep asks for each world once for every planner."""
@@ -94,7 +93,7 @@ def _key(scenario: Scenario, radius: float | None) -> Key:
         raise ValueError(f"the radius must be positive and finite, got {radius}")
     return (
         scenario.obstacles,
-        scenario.arena.size if scenario.arena.walls else None,
+        scenario.arena,
         scenario.start.position,
         scenario.goal.position,
         scenario.goal.radius,
@@ -102,28 +101,32 @@ def _key(scenario: Scenario, radius: float | None) -> Key:
     )
 
 
+def _space(obstacles: tuple[Obstacle, ...], arena: Arena, radius: float) -> ConfigurationSpace:
+    return ConfigurationSpace(Field.of(obstacles, arena), radius)
+
+
 @lru_cache(maxsize=_REMEMBERED)
 def _route(
     obstacles: tuple[Obstacle, ...],
-    walls: tuple[float, float] | None,
+    arena: Arena,
     start: Point,
     goal: Point,
     goal_radius: float,
     radius: float,
 ) -> Route | None:
-    return shortest_route(ConfigurationSpace.of(obstacles, walls, radius), start, goal, goal_radius)
+    return shortest_route(_space(obstacles, arena, radius), start, goal, goal_radius)
 
 
 @lru_cache(maxsize=_REMEMBERED)
 def _is_feasible(
     obstacles: tuple[Obstacle, ...],
-    walls: tuple[float, float] | None,
+    arena: Arena,
     start: Point,
     goal: Point,
     goal_radius: float,
     radius: float,
 ) -> bool:
-    return is_connected(ConfigurationSpace.of(obstacles, walls, radius), start, goal, goal_radius)
+    return is_connected(_space(obstacles, arena, radius), start, goal, goal_radius)
 
 
 __all__ = ["GRAZE", "Route", "feasible", "shortest_path", "spl"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,11 +11,8 @@ from fuzzyq_bullet.geometry import Field, Floats
 from fuzzyq_bullet.shapes import GRAZE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
-    from fuzzyq_bullet.shapes import Obstacle
 
 TOUCHES = 2 * GRAZE
 """The same for what was itself found to within ``GRAZE``."""
@@ -26,34 +22,26 @@ _NEAR = 16
 """Discs about each end that a line is held against first: they stop most lines."""
 
 
-@dataclass(frozen=True, eq=False)
 class ConfigurationSpace:
     """Obstacles grown by the radius of the disc whose centre moves among them.
 
-    Attributes:
-        radius: Radius of the moving disc (m).
+    Args:
         field: The obstacles and walls as they are.
+        radius: Radius of the moving disc (m).
+
+    Attributes:
+        field: As given.
+        radius: As given.
         centres: Shape (N, 2) (m): of all grown discs, those of round obstacles and of corners.
         radii: Shape (N,): radii of the grown discs (m).
         near: Shape (N, K): for each disc, the discs with the nearest centres, nearest first.
     """
 
-    radius: float
-    field: Field
-    centres: Floats
-    radii: Floats
-    near: NDArray[np.intp]
-
-    @classmethod
-    def of(
-        cls, obstacles: Sequence[Obstacle], walls: tuple[float, float] | None, radius: float
-    ) -> ConfigurationSpace:
-        """Build it from obstacles and the size (m) that walls enclose, None without walls."""
-        bare = Field.of(obstacles)
-        field = Field(arena=walls, groups=bare.groups)
+    def __init__(self, field: Field, radius: float) -> None:
+        self.field, self.radius = field, radius
         discs = np.unique(field.discs + np.array([0.0, 0.0, radius]), axis=0)
-        centres, radii = discs[:, :2].copy(), discs[:, 2].copy()
-        return cls(radius, field, centres, radii, _nearest(centres))
+        self.centres, self.radii = discs[:, :2].copy(), discs[:, 2].copy()
+        self.near = _nearest(self.centres)
 
     def is_free(self, points: Floats) -> NDArray[np.bool_]:
         """Tell for each point, shape (K, 2), whether the disc fits there; shape (K,)."""

@@ -17,6 +17,7 @@ from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Obstacle, Scenario
 from fuzzyq_bullet.scenario.problems import MAX_SHOWN, Loc, key_path
+from fuzzyq_bullet.shapes.motion import STILL
 
 Conflict: TypeAlias = tuple[Loc, str]
 
@@ -27,12 +28,13 @@ def find_conflicts(scenario: Scenario) -> list[Conflict]:
     Conflicts are: start or goal outside the arena; the robot's disc at the start, or at the centre
     of the goal, touching a wall or an obstacle; a start within the goal (a run of no steps, with
     no shortest path to measure it by); an obstacle wholly outside the walls; obstacles to be drawn
-    that are too large for the arena or too many. Obstacles may overlap each other and poke through
-    walls.
+    that are too large for the arena or too many; an obstacle that moves. Obstacles may overlap each
+    other and poke through walls.
     """
     return [
         *_places(scenario),
         *_obstacles(scenario),
+        *_motions(scenario),
         *_random(scenario),
     ]
 
@@ -100,6 +102,16 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
                     f"is wholly outside the walls of the arena, {width:g} × {depth:g} m",
                 )
     return [by_index[i] for i in sorted(by_index)]
+
+
+def _motions(scenario: Scenario) -> list[Conflict]:
+    """Return the obstacles that would move: the physics cannot move them yet."""
+    times = np.linspace(0.0, scenario.limits.time, 50).tolist()
+    return [
+        (("obstacles", i, "motion"), f"moves, and obstacles cannot move yet; allowed: {STILL.kind}")
+        for i, item in enumerate(scenario.obstacles)
+        if item.motion is not STILL and any(map(any, map(item.motion.pose, times)))
+    ]
 
 
 def _random(scenario: Scenario) -> list[Conflict]:

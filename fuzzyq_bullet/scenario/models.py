@@ -16,8 +16,10 @@ from pydantic import (
     BeforeValidator,
     Field,
     SerializeAsAny,
+    SerializerFunctionWrapHandler,
     ValidationError,
     ValidationInfo,
+    field_serializer,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
@@ -39,6 +41,7 @@ from fuzzyq_bullet.robots import FUZZYQ, RobotModel, robot_model, robot_names
 from fuzzyq_bullet.robots.base import Acceleration, MaxSpeed, MaxTurnRate, TurnAcceleration
 from fuzzyq_bullet.scenario.layouts import AnyLayout, Random
 from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
+from fuzzyq_bullet.shapes.motion import STILL
 
 Drive: TypeAlias = Literal["wheels", "kinematic"]
 OutcomeName: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
@@ -141,6 +144,7 @@ def _default_planner() -> PlannerSettings:
     return settings_for(DEFAULT_PLANNER).model_validate({"name": DEFAULT_PLANNER})
 
 
+_AT_REST = STILL.model_dump()
 ANY_PLANNER = "any planner"
 """Context of a validation that takes a planner nobody registered here, as a mere name."""
 _LONGEST_NAME = 100
@@ -200,6 +204,15 @@ class Scenario(Model):
     )
     limits: Limits = Limits()
     expect: Expect = Expect()
+
+    @field_serializer("obstacles", mode="wrap")
+    def _without_rest(self, value: Any, handler: SerializerFunctionWrapHandler) -> Any:
+        """Leave out that obstacles stand still: a file of ten thousand need not say so."""
+        told = handler(value)
+        for item in told:
+            if item.get("motion") == _AT_REST:
+                del item["motion"]
+        return told
 
     def start_heading(self) -> float:
         """Return the heading at the start (rad); towards the goal when none is given."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, TypeAlia
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
+from pydantic import Field
 
 from fuzzyq_bullet.quantities import DECIMALS, Model, Point
 from fuzzyq_bullet.registry import ModelRegistry
@@ -100,14 +100,6 @@ class Shape(Model, ABC):
         px, py = self.position
         at = round(x + cos * px - sin * py, DECIMALS), round(y + sin * px + cos * py, DECIMALS)
         return self.model_copy(update={"position": at})
-
-    @model_serializer(mode="wrap")
-    def _without_rest(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out that it stands still: a file of ten thousand obstacles need not say so."""
-        data: dict[str, Any] = handler(self)
-        if self.motion == STILL:
-            data.pop("motion", None)
-        return data
 
 
 class ShapeGroup(ABC):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.shapes.base import (
+    GRAZE,
     PARALLEL,
     Collision,
     Floats,
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 
 _HULL_MARGIN = 0.001
 """How far a convex mesh of PyBullet reaches beyond its corners (m)."""
-_OVERLAP = 1e-9
-"""How far the grown parts of a polygon overlap, so that rounding leaves no gap between them (m)."""
 
 
 class ConvexPolygons(ShapeGroup):
@@ -65,7 +64,9 @@ class ConvexPolygons(ShapeGroup):
 
     def distances(self, x: Floats, y: Floats, which: Mask | None = None) -> Floats:
         """Return the distance to each polygon."""
-        distance = self._to_polygons(x, y)[0]
+        above, fx, fy = self._apart(x, y)
+        inside = above.max(axis=2)
+        distance: Floats = np.where(inside <= 0.0, inside, np.hypot(fx, fy).min(axis=2))
         return distance if which is None else distance[:, which]
 
     def free_distances(self, x: float, y: float, ux: Floats, uy: Floats, radius: float) -> Floats:
@@ -82,9 +83,17 @@ class ConvexPolygons(ShapeGroup):
         corner = reach_of_circles(dx, dy, ux, uy, np.full_like(dx, radius))
         reach = np.minimum(way, np.where(self._real, corner, np.inf)).min(axis=2)
         # Distance to a convex body is convex along a line: what begins to grow goes on growing.
-        distance, grow_x, grow_y = self._to_polygons(np.array([[x]]), np.array([[y]]))
-        growth = grow_x * ux[..., 0] + grow_y * uy[..., 0]
+        above, fx, fy = self._apart(np.array([[x]]), np.array([[y]]))
+        inside, apart = above.max(axis=2, keepdims=True), np.hypot(fx, fy)
+        within = inside <= 0.0
+        outside = apart.min(axis=2, keepdims=True)
+        # In the middle between sides, where several are nearest, every way leads out.
+        nearest = np.where(within, above >= inside - GRAZE, apart <= outside)
+        span = np.where(outside > 0.0, outside, 1.0)
+        grows = np.where(within, -closing, (fx * ux + fy * uy) / span)
+        growth = np.where(nearest, grows, -np.inf).max(axis=2)
         stopped = np.where(growth < -PARALLEL, 0.0, np.inf)
+        distance = np.where(within, inside, outside)[..., 0]
         return np.where(distance <= radius, stopped, reach)
 
     def are_crossed(self, begin: Floats, end: Floats) -> Mask:
@@ -116,30 +125,19 @@ class ConvexPolygons(ShapeGroup):
             for side, level in enumerate(depth):
                 lines = np.array([n[side], -n[side], t[side], -t[side]])
                 last = first[side] + self._length[k][real][side]
-                levels = [level + grown, _OVERLAP - level, last, -first[side]]
+                levels = [level + grown, GRAZE - level, last, -first[side]]
                 found.append(_within(lines, np.array(levels), radius))
         return np.concatenate(found) if found else np.zeros((0, 2))
 
-    def _to_polygons(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
-        """Distances, shape (K, N), and the directions in which they grow fastest."""
+    def _apart(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
+        """How far points, shape (K, 1), are beyond each side's line, and the ways from the sides.
+
+        Each of shape (K, N, E).
+        """
         dx, dy = x[..., None] - self._x, y[..., None] - self._y
         above = np.where(self._real, dx * self._nx + dy * self._ny, -np.inf)
-        highest = above.argmax(axis=2)[..., None]
-        inside = np.take_along_axis(above, highest, 2)[..., 0]
         along = np.clip(dx * self._tx + dy * self._ty, 0.0, self._length)
-        fx, fy = dx - along * self._tx, dy - along * self._ty
-        apart = np.hypot(fx, fy)
-        nearest = apart.argmin(axis=2)[..., None]
-        outside, fx, fy = (np.take_along_axis(a, nearest, 2)[..., 0] for a in (apart, fx, fy))
-        within = inside <= 0.0
-        span = np.where(outside > 0.0, outside, 1.0)
-        which = np.arange(self._count)
-        nx, ny = self._nx[which, highest[..., 0]], self._ny[which, highest[..., 0]]
-        return (
-            np.where(within, inside, outside),
-            np.where(within, nx, fx / span),
-            np.where(within, ny, fy / span),
-        )
+        return above, dx - along * self._tx, dy - along * self._ty
 
 
 class ConvexShape(Shape):
