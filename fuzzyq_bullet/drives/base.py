@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Decision, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Decision, Observation
 from fuzzyq_bullet.scenario.models import Robot
 from fuzzyq_bullet.trajectory import Collision
 
@@ -54,4 +54,4 @@ def longest_step_time(robot: Robot) -> float:
     It ties the paper's steps to time: a decision's step is driven at ``step / longest_step_time``,
     so the longest one is driven at ``max_speed``.
     """
-    return LONGEST_STRIDE * STEP_UNIT / robot.max_speed
+    return LONGEST_STRIDE * robot.radius / robot.max_speed

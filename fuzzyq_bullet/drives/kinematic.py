@@ -58,6 +58,7 @@ class KinematicDriver:
             radius=self._radius + SENSOR_MARGIN,
             sense=sensor,
             look=sensor.look,
+            unit=self._radius,
         )
 
     def advance(self, decision: Decision) -> None:

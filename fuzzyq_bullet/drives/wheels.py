@@ -73,6 +73,7 @@ class WheelsDriver:
             sense=sensor,
             look=sensor.look,
             motion=self._motion,
+            unit=self._limits.radius,
         )
 
     def advance(self, decision: Decision) -> None:

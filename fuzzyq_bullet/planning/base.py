@@ -18,7 +18,7 @@ Mode: TypeAlias = Literal["routine", "breakout", "following"]
 MODES: tuple[Mode, ...] = get_args(Mode)
 
 STEP_UNIT = 0.2
-"""S_p, the standard single step (m): the unit of the fuzzy controller."""
+"""S_p of the default robot, the standard single step (m): the unit of the fuzzy controller."""
 LONGEST_STRIDE = 2.0
 """Upper end of N_s: the longest step is this many S_p."""
 
@@ -92,6 +92,7 @@ class Observation(NamedTuple):
             at most ``range + radius``.
         motion: Limits of a body that must turn and brake, or None for the paper's point robot,
             which faces any way at once and stops at once (Eq. 17).
+        unit: S_p, the unit of the fuzzy controller (m): the robot's radius.
     """
 
     time: float
@@ -106,6 +107,7 @@ class Observation(NamedTuple):
     sense: RangeSensor
     look: ThinRays
     motion: Motion | None = None
+    unit: float = STEP_UNIT
 
     @property
     def slowness(self) -> float:

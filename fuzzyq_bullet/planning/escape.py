@@ -12,16 +12,16 @@ from __future__ import annotations
 
 import math
 
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Decision, Mode, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Decision, Mode, Observation
 from fuzzyq_bullet.planning.course import NEARER, Course
 from fuzzyq_bullet.planning.exits import Exit
 from fuzzyq_bullet.planning.places import Places
 from fuzzyq_bullet.planning.sweep import eased, first_free
 
-ENOUGH = 1.0 * STEP_UNIT
-"""What a turn must find free, as Fig. 6 has it (m)."""
-GAIN = 1.0 * STEP_UNIT
-"""By how much nearer than ever before the line to the goal must lead to be taken again (m)."""
+ENOUGH = 1.0
+"""What a turn must find free, as Fig. 6 has it, in S_p."""
+GAIN = 1.0
+"""By how much nearer than ever before the line to the goal must lead to be taken again, in S_p."""
 PATIENCE = 2.5
 """Time without coming nearer to the goal after which the routine part has failed (s); longer for a
 slow robot."""
@@ -59,13 +59,13 @@ class Escape:
         here, goal = observation.position, observation.goal
         to_goal = math.dist(here, goal)
         middle = routine.lengths[1]
-        enough = min(routine.breakout_at * STEP_UNIT, to_goal)
+        enough = min(routine.breakout_at * observation.unit, to_goal)
         if to_goal < self._nearest - NEARER:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._places.pass_by(here)
 
         if self._exit is not None:
-            nearer = middle >= to_goal or to_goal - middle <= self._mark - GAIN
+            nearer = middle >= to_goal or to_goal - middle <= self._mark - GAIN * observation.unit
             if not nearer or middle < enough:
                 return self._follow(routine, observation)
             self._exit, self._straight = None, True
@@ -109,7 +109,7 @@ class Escape:
             self._look(observation)
         if self._exit is None or leg is None:
             return routine._replace(step=0.0, reach=0.0, mode=mode, hopeless=True)
-        step = routine.weights[0] * LONGEST_STRIDE * STEP_UNIT
+        step = routine.weights[0] * LONGEST_STRIDE * observation.unit
         return routine._replace(
             heading=leg.heading,
             step=step if observation.motion is not None else min(step, leg.way),
@@ -132,7 +132,9 @@ def _break_out(routine: Decision, observation: Observation, middle: float) -> De
     """Take the smaller turn, left or right, that is free (4.2, Fig. 6)."""
     bearing = routine.lines[1]
     # A stalled robot may have its line free for a while: it is what stands there that counts.
-    enough = max(ENOUGH, middle + 0.25 * STEP_UNIT) if middle < observation.range else ENOUGH
+    enough = least = ENOUGH * observation.unit
+    if middle < observation.range:
+        enough = max(least, middle + 0.25 * observation.unit)
     tie = 1 if routine.difference >= 0.0 else -1
     sides = [
         (side, found)
@@ -147,10 +149,10 @@ def _break_out(routine: Decision, observation: Observation, middle: float) -> De
     # T of Eqs. 24 to 26, but no farther than what is known to be free.
     way = min(found.free, max(0.0, to_goal * math.cos(found.heading - bearing)))
     x, y = observation.position
-    step = routine.weights[0] * LONGEST_STRIDE * STEP_UNIT
+    step = routine.weights[0] * LONGEST_STRIDE * observation.unit
     return routine._replace(
         heading=found.heading,
-        step=step if observation.motion is not None else min(ENOUGH, found.free),
+        step=step if observation.motion is not None else min(least, found.free),
         mode="breakout",
         target=(x + way * math.cos(found.heading), y + way * math.sin(found.heading)),
     )

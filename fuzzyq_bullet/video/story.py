@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.planning.base import MODES, STEP_UNIT
+from fuzzyq_bullet.planning.base import MODES
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
@@ -116,14 +116,14 @@ def _goes_on(trajectory: Trajectory, index: int) -> str:
 
 
 def _breaks_out(trajectory: Trajectory, index: int) -> str:
-    decisions = trajectory.decisions
+    decisions, unit = trajectory.decisions, trajectory.scenario.robot.radius
     ahead = float(decisions.lengths[index, 1])
     lean = off_goal_line(decisions, index)
     way = lean if math.isfinite(lean) else _turn(trajectory, index)
     side = "straight ahead" if abs(way) < STRAIGHT else "to the " + _side(way)
-    if not math.isfinite(ahead) or ahead < STEP_UNIT:
+    if not math.isfinite(ahead) or ahead < unit:
         because = "Blocked ahead"
-    elif ahead < float(decisions.breakout_at[index]) * STEP_UNIT:
+    elif ahead < float(decisions.breakout_at[index]) * unit:
         because = f"Blocked {ahead:.1f} m ahead"
     else:
         because = "Comes no nearer"
