@@ -10,7 +10,7 @@ from fuzzyq_bullet.drives.wheels import COMMAND_STEPS
 from fuzzyq_bullet.physics.engine import TIME_STEP
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.resources import asset
-from fuzzyq_bullet.robots import FUZZYQ
+from fuzzyq_bullet.robots import FUZZYQ, RobotModel, register_robot
 from fuzzyq_bullet.scenario import Arena, Robot
 
 LIMITS = Robot()
@@ -31,7 +31,7 @@ def drive(world, wanted_at, seconds):
         if step % COMMAND_STEPS == 0:
             wanted = wanted_at(step * TIME_STEP, path, heading - 0.3, now)
             now = ramp(now, wanted, LIMITS, COMMAND_STEPS * TIME_STEP)
-            world.robot.command(*FUZZYQ.wheel_commands(*now))
+            world.robot.command(*world.model.wheel_commands(*now))
         world.advance(1)
         half = heading + now.turn_rate * TIME_STEP / 2
         x += now.speed * math.cos(half) * TIME_STEP
@@ -128,6 +128,25 @@ def test_the_urdf_loads_without_a_word_from_pybullet(capfd):
     out, err = capfd.readouterr()
     assert out == ""
     assert err == ""
+
+
+def test_a_robot_made_from_its_numbers_drives_as_truly_as_one_from_a_file(capfd):
+    small = RobotModel(name="small", radius=0.12, track=0.18, wheel_radius=0.03, mass=1.5)
+    for model in (FUZZYQ.model_copy(update={"urdf_file": None}), small):
+        with World([], Arena(size=(100.0, 100.0), walls=False), model=model) as world:
+            world.robot.place(50.0, 50.0, 0.3)
+            ideal, state, path = drive(world, lambda *_: Twist(0.4, 0.5), 8.0)
+        distance, turned = off(ideal, state)
+        assert distance < 0.002 * path
+        assert turned < 0.002 * (ideal[2] - 0.3)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_robot_is_registered_once_and_only_with_wheels_that_fit():
+    with pytest.raises(ValueError, match="registered already"):
+        register_robot(FUZZYQ)
+    with pytest.raises(ValueError, match="do not fit under its body"):
+        register_robot(RobotModel(name="wide", radius=0.1, track=0.3))
 
 
 def test_another_reader_sees_the_same_robot():
