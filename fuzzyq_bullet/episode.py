@@ -47,7 +47,7 @@ def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
     rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(1,)))
     planner = build_planner(scenario.planner, rng)
     build = World if scenario.drive == "wheels" else SensorWorld
-    with build(scenario.obstacles, scenario.arena) as world:
+    with build(scenario.obstacles, scenario.arena, model=scenario.robot.spec) as world:
         return run_in(world, scenario, planner, progress=progress)
 
 

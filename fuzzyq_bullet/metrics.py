@@ -8,9 +8,10 @@ from typing import Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from fuzzyq_bullet.oracle import feasible, shortest_path, spl
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
 from fuzzyq_bullet.planning import MODES
-from fuzzyq_bullet.scenario import Box, Scenario
+from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.trajectory import Outcome, Trajectory
 
 MOST_ROUND = 1500
@@ -120,7 +121,7 @@ def has_way(scenario: Scenario) -> bool | None:
 
 
 def _is_crowded(scenario: Scenario) -> bool:
-    return sum(4 if isinstance(one, Box) else 1 for one in scenario.obstacles) > MOST_ROUND
+    return len(Field.of(scenario.obstacles).discs) > MOST_ROUND
 
 
 def _shortest(scenario: Scenario) -> float | None:

@@ -23,7 +23,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.geometry import Field as Obstacles
 from fuzzyq_bullet.planning.decision import FIELDS, Decision
-from fuzzyq_bullet.scenario.models import ANY_NAME, ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.scenario.models import ANY_NAME, Scenario
 from fuzzyq_bullet.version import __version__
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -167,7 +167,7 @@ class Trajectory:
                 speed=at[:, 4],
                 turn_rate=at[:, 5],
                 wheel_speeds=at[:, 6:8],
-                clearance=_clearance(field, at[:, 1:3], scenario.drive) - ROBOT_RADIUS,
+                clearance=_clearance(field, at[:, 1:3], scenario.drive) - scenario.robot.radius,
             ),
             decisions=Decisions(
                 tick=np.array([tick for tick, _ in decisions], dtype=np.int64),

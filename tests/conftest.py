@@ -22,9 +22,9 @@ hypothesis.settings.load_profile("fuzzyq")
 
 SLOW = (
     *("check", "cli_interrupt", "cli_train", "cluster", "escape_table", "exploration"),
-    *("extend_study", "figure_panels", "gym", "layouts", "learned_weights", "learning_gain"),
-    *("learning_training", "oracle", "package", "pythons", "report", "success", "sweep", "video"),
-    "video_picture",
+    *("extend_study", "figure_panels", "ground_truth", "gym", "layouts", "learned_weights"),
+    *("learning_gain", "learning_training", "package", "pythons", "report", "success", "sweep"),
+    *("video", "video_picture"),
 )
 """Modules of tests that take long: ``-m "not slow"`` leaves them out."""
 

@@ -11,13 +11,13 @@ from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.episode import Episode, run, run_in
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.ground_truth import shortest_path
 from fuzzyq_bullet.metrics import result_of
-from fuzzyq_bullet.oracle import shortest_path
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
+from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
-    ROBOT_RADIUS,
     Arena,
     Box,
     Cylinder,
@@ -58,7 +58,7 @@ def ahead_of(trajectory):
     ticks = trajectory.ticks
     return np.array(
         [
-            field.free_distance(position, [heading], ROBOT_RADIUS, 5.0)[0]
+            field.free_distance(position, [heading], FUZZYQ.radius, 5.0)[0]
             for position, heading in zip(ticks.position, ticks.heading, strict=True)
         ]
     )
@@ -267,7 +267,7 @@ def test_the_kinematic_touch_is_swept_and_not_only_looked_for_at_the_end():
 @pytest.mark.parametrize("gap", [0.02, 0.21, 0.38, 0.399])
 def test_a_step_a_little_longer_than_what_is_free_ends_at_the_touch(gap):
     start = Start(position=(2.0, 2.5))
-    obstacles = (cylinder(2.0 + 2.0 * ROBOT_RADIUS + gap, 2.5),)
+    obstacles = (cylinder(2.0 + 2.0 * FUZZYQ.radius + gap, 2.5),)
     task = realise(scenario(drive="kinematic", start=start, obstacles=obstacles))
     with SensorWorld(task.obstacles, task.arena) as world:
         trajectory = run_in(world, task, Onward())

@@ -10,6 +10,7 @@ from exploring import observe
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import MODES, Decision, ImprovedFuzzySettings, Observation, RangeSensor
+from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
 from fuzzyq_bullet.planning.exploration import NEAR
 from fuzzyq_bullet.planning.path_follower import PATIENCE as FOLLOWER_PATIENCE
@@ -232,11 +233,11 @@ def test_a_stalled_robot_does_not_leave_where_it_stalled():
 def test_it_leaves_where_the_line_leads_nearer_than_the_line_that_did_not_help():
     # The line led to 0.43 m before the goal's 5 m. At the same distance from the goal elsewhere:
     as_before = math.dist((0.1, 1.0), (5.0, 0.0)) - 4.57
-    for more in (-0.1, 0.0, GAIN - 0.02):
+    for more in (-0.1, 0.0, GAIN * STEP_UNIT - 0.02):
         walk = stalled()
         assert walk.decide((0.1, 1.0), middle=as_before + more).mode == "following"
     walk = stalled()
-    left = walk.decide((0.1, 1.0), middle=as_before + GAIN + 0.02)
+    left = walk.decide((0.1, 1.0), middle=as_before + GAIN * STEP_UNIT + 0.02)
     assert left.mode == "routine"
     # ... and it drives that line, not the controller's heading, until it is nearer than ever.
     assert left.heading == pytest.approx(math.atan2(-1.0, 4.9))

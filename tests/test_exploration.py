@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field, wrap_angle
-from fuzzyq_bullet.oracle import feasible
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.planning.exploration import (
     NEAR,
     ExplorationGraph,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +10,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import WALL, Field, wrap_angle
+from fuzzyq_bullet.scenario import Arena, Box, Cylinder
+from fuzzyq_bullet.shapes import ConvexPolygons
 
 coordinate = st.floats(-3.0, 3.0).map(lambda v: round(v, 3))
 angle = st.floats(-7.0, 7.0)
@@ -169,9 +170,17 @@ def test_an_overlapping_disc_is_stopped_only_by_what_it_would_come_closer_to(
     assert free == min([1.0, *together])
 
 
+def polygons(boxes):
+    """The same rectangles as a shape that knows nothing but its corners; one is padded."""
+    return [np.array(corners(*one)) for one in boxes]
+
+
 @pytest.mark.parametrize("heading", [0.0, 0.6, math.pi / 2, 2.5, -1.0])
 def test_a_disc_at_the_very_centre_of_an_obstacle_may_leave_it_any_way(heading):
-    for field in (make([(1, 1, 0.5)]), make([], [(1, 1, 1, 1, 0.3)]), make([], [(1, 1, 2, 1, 0)])):
+    blocks = [(1, 1, 1, 1, 0.3)], [(1, 1, 2, 1, 0)]
+    shapes = [make([], one) for one in blocks]
+    shapes += [Field(groups=[ConvexPolygons(polygons(one))]) for one in blocks]
+    for field in (make([(1, 1, 0.5)]), *shapes):
         assert field.free_distance((1, 1), heading, 0.2, 3.0)[0] == 3.0
 
 
@@ -181,6 +190,30 @@ def test_headings_are_answered_one_by_one(radius, yaw, headings):
     batch = field.free_distance((0.0, 0.0), headings, radius, 3.0)
     single = [field.free_distance((0.0, 0.0), h, radius, 3.0)[0] for h in headings]
     np.testing.assert_array_equal(batch, single)
+
+
+@given(
+    st.lists(box, min_size=1, max_size=4),
+    st.tuples(coordinate, coordinate),
+    st.lists(angle, min_size=1, max_size=5),
+    st.floats(0.0, 0.6),
+)
+@settings(max_examples=200)
+def test_a_shape_of_corners_alone_answers_like_the_boxes_of_those_corners(
+    boxes, origin, headings, radius
+):
+    triangle = np.array([(20.0, 20.0), (21.0, 20.0), (20.5, 23.0), (20.2, 22.5), (20.0, 21.5)])
+    known = make([], boxes)
+    field = Field(groups=[ConvexPolygons([*polygons(boxes), triangle])])
+    gaps = known.distances(origin)
+    np.testing.assert_allclose(field.distances(origin)[:-1], gaps, atol=1e-9)
+    # Just touching, and where several sides are nearest, rounding decides.
+    assume(np.abs(gaps - radius).min() > 1e-6 and gaps.min() > 1e-6)
+    np.testing.assert_allclose(
+        field.free_distance(origin, headings, radius, 4.0),
+        known.free_distance(origin, headings, radius, 4.0),
+        atol=1e-6,
+    )
 
 
 def test_known_contacts():
@@ -220,18 +253,16 @@ def test_an_empty_field_is_free_everywhere():
 
 def test_indices_are_those_of_the_scenario_with_shapes_mixed():
     obstacles = [
-        SimpleNamespace(shape="box", position=(1.0, 1.0), size=(0.4, 0.4), yaw=0.0),
-        SimpleNamespace(shape="cylinder", position=(3.0, 1.0), radius=0.2),
-        SimpleNamespace(shape="box", position=(5.0, 1.0), size=(0.4, 0.4), yaw=0.3),
+        Box(shape="box", position=(1.0, 1.0), size=(0.4, 0.4)),
+        Cylinder(shape="cylinder", position=(3.0, 1.0), radius=0.2),
+        Box(shape="box", position=(5.0, 1.0), size=(0.4, 0.4), yaw=0.3),
     ]
-    field = Field.of(obstacles, SimpleNamespace(size=(9.0, 9.0), walls=True))
+    field = Field.of(obstacles, Arena(size=(9.0, 9.0)))
     for i, item in enumerate(obstacles):
         assert field.nearest(item.position) == (i, -0.2)
     assert field.nearest((8.5, 5.0)) == (WALL, 0.5)
     np.testing.assert_allclose(field.distances((1.0, 2.0)), [0.8, math.sqrt(5) - 0.2, 3.88], 1e-2)
-    assert Field.of(obstacles, SimpleNamespace(size=(9.0, 9.0), walls=False)).arena is None
-    with pytest.raises(ValueError, match="cone"):
-        Field.of([SimpleNamespace(shape="cone")])
+    assert Field.of(obstacles, Arena(size=(9.0, 9.0), walls=False)).arena is None
 
 
 def test_a_field_is_frozen_and_shares_no_memory_with_what_it_was_built_from():
@@ -240,14 +271,14 @@ def test_a_field_is_frozen_and_shares_no_memory_with_what_it_was_built_from():
     source[0, 0] = 99.0
     assert field.nearest((0, 0)) == (0, 1.5)
     with pytest.raises(ValueError, match="read-only"):
-        field.cylinders[0, 0] = 1.0
+        field.groups[0].discs[0, 0] = 1.0
     with pytest.raises(AttributeError):
         field.arena = (1.0, 1.0)
 
 
 def test_numbering_an_obstacle_twice_is_refused():
     with pytest.raises(ValueError, match="number all obstacles once"):
-        Field(np.ones((2, 3)), cylinder_index=np.array([0, 0]))
+        Field(np.ones((2, 3)), order=[0, 0])
 
 
 def test_where_something_is_touched_lies_on_its_surface() -> None:

@@ -27,11 +27,11 @@ from fuzzyq_bullet import Decision
 from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.gym.env import EpisodeEnv
 from fuzzyq_bullet.gym.navigation import NavigationEnv
 from fuzzyq_bullet.gym.tasks import TaskSource
 from fuzzyq_bullet.gym.weights import WeightsEnv
-from fuzzyq_bullet.oracle import feasible
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.scenario import Scenario, load_scenario, parse_scenario, realise, with_options
 from fuzzyq_bullet.video import style

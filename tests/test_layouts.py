@@ -14,9 +14,9 @@ from scipy.ndimage import label
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.oracle import feasible, shortest_path
+from fuzzyq_bullet.ground_truth import feasible, shortest_path
+from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
-    ROBOT_RADIUS,
     Box,
     Cylinder,
     Scenario,
@@ -82,7 +82,7 @@ def test_all_is_clear_of_start_and_goal_and_can_be_run(layout, seed, walls, goal
     assert find_conflicts(drawn) == []
     field = Field.of(drawn.obstacles)
     for place in (start, goal):
-        assert field.nearest(place)[1] >= ROBOT_RADIUS + margin
+        assert field.nearest(place)[1] >= FUZZYQ.radius + margin
     if layout not in ("rectangles", "scatter"):
         assert feasible(drawn)
     assert parse_scenario(dump_scenario(drawn)) == drawn
@@ -142,7 +142,7 @@ def test_a_trap_stands_in_the_way_between_start_and_goal(layout):
         drawn = realise(asked(layout), seed)
         route = shortest_path(drawn)
         assert route is not None
-        [free] = Field.of(drawn.obstacles).free_distance((1.0, 5.0), 0.0, ROBOT_RADIUS, 8.0)
+        [free] = Field.of(drawn.obstacles).free_distance((1.0, 5.0), 0.0, FUZZYQ.radius, 8.0)
         assert free < 8.0
         lengths.append(route.length)
     assert min(lengths) > 8.0 - 0.2

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.fuzzy.paper import paper_controller
+from fuzzyq_bullet.ground_truth import feasible, shortest_path
 from fuzzyq_bullet.learning import Policy
-from fuzzyq_bullet.oracle import feasible, shortest_path
 from fuzzyq_bullet.planning import (
     DEFAULT_PLANNER,
     FuzzyQLambdaSettings,

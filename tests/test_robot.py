@@ -8,10 +8,10 @@ import pytest
 from fuzzyq_bullet.drives.velocity_controller import STILL, Twist, limit_acceleration
 from fuzzyq_bullet.drives.wheels import COMMAND_STEPS
 from fuzzyq_bullet.physics.engine import TIME_STEP
-from fuzzyq_bullet.physics.robot import wheel_commands
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.resources import asset
-from fuzzyq_bullet.scenario import ROBOT_RADIUS, Arena, Robot
+from fuzzyq_bullet.robots import FUZZYQ, RobotModel, register_robot
+from fuzzyq_bullet.scenario import Arena, Robot
 
 LIMITS = Robot()
 
@@ -31,7 +31,7 @@ def drive(world, wanted_at, seconds):
         if step % COMMAND_STEPS == 0:
             wanted = wanted_at(step * TIME_STEP, path, heading - 0.3, now)
             now = limit_acceleration(now, wanted, LIMITS, COMMAND_STEPS * TIME_STEP)
-            world.robot.command(*wheel_commands(*now))
+            world.robot.command(*world.model.wheel_commands(*now))
         world.advance(1)
         half = heading + now.turn_rate * TIME_STEP / 2
         x += now.speed * math.cos(half) * TIME_STEP
@@ -105,7 +105,7 @@ def test_it_keeps_its_limits_of_acceleration(world):
     for step in range(240):
         if step % COMMAND_STEPS == 0:
             now = limit_acceleration(now, Twist(0.6, 0.0), LIMITS, COMMAND_STEPS * TIME_STEP)
-            world.robot.command(*wheel_commands(*now))
+            world.robot.command(*FUZZYQ.wheel_commands(*now))
         world.advance(1)
         speeds.append(world.robot.state().speed)
     gained = np.diff(speeds[::24]) / (24 * TIME_STEP)
@@ -130,6 +130,25 @@ def test_the_urdf_loads_without_a_word_from_pybullet(capfd):
     assert err == ""
 
 
+def test_a_robot_made_from_its_numbers_drives_as_truly_as_one_from_a_file(capfd):
+    small = RobotModel(name="small", radius=0.12, track=0.18, wheel_radius=0.03, mass=1.5)
+    for model in (FUZZYQ.model_copy(update={"urdf_file": None}), small):
+        with World([], Arena(size=(100.0, 100.0), walls=False), model=model) as world:
+            world.robot.place(50.0, 50.0, 0.3)
+            ideal, state, path = drive(world, lambda *_: Twist(0.4, 0.5), 8.0)
+        distance, turned = off(ideal, state)
+        assert distance < 0.002 * path
+        assert turned < 0.002 * (ideal[2] - 0.3)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_robot_is_registered_once_and_only_with_wheels_that_fit():
+    with pytest.raises(ValueError, match="registered already"):
+        register_robot(FUZZYQ)
+    with pytest.raises(ValueError, match="do not fit under its body"):
+        register_robot(RobotModel(name="wide", radius=0.1, track=0.3))
+
+
 def test_another_reader_sees_the_same_robot():
     yourdfpy = pytest.importorskip("yourdfpy")
     robot = yourdfpy.URDF.load(str(asset("robot.urdf")))
@@ -137,4 +156,4 @@ def test_another_reader_sees_the_same_robot():
     assert robot.base_link == "chassis"
     assert set(robot.actuated_joint_names) == {"left_axle", "right_axle"}
     [body] = robot.link_map["chassis"].collisions
-    assert body.geometry.cylinder.radius == ROBOT_RADIUS
+    assert body.geometry.cylinder.radius == FUZZYQ.radius

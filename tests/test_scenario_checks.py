@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names
 from fuzzyq_bullet.resources import data_folder
+from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
-    ROBOT_RADIUS,
     Scenario,
     check,
     find_conflicts,
@@ -67,7 +67,7 @@ def test_start_and_goal_lie_in_the_arena_and_clear_of_its_walls(key):
         ((loc, why),) = conflicts(**{key: {"position": position}})
         assert loc == (key, "position")
         assert "is outside the arena, 10 × 10 m" in why
-    close = {key: {"position": [3.0, ROBOT_RADIUS - 0.01]}}
+    close = {key: {"position": [3.0, FUZZYQ.radius - 0.01]}}
     assert where(**close) == [(key, "position")]
     assert where(**close, arena={"walls": False}) == []
 

@@ -105,11 +105,11 @@ def test_a_misspelt_key_gets_a_suggestion_and_the_allowed_keys():
     obstacle = "obstacles:\n  - {shape: cylinder, position: [4, 4], radius: 0.2, raduis: 3}\n"
     assert only(GOOD + obstacle) == (
         "x.yaml:5: obstacles[0].raduis: unknown key; did you mean 'radius'? "
-        "allowed: shape, position, radius"
+        "allowed: shape, position, motion, radius"
     )
     assert only(GOOD + "robot: {max_sped: 1}") == (
         "x.yaml:4: robot.max_sped: unknown key; did you mean 'max_speed'? "
-        "allowed: max_speed, max_turn_rate, acceleration, turn_acceleration"
+        "allowed: model, max_speed, max_turn_rate, acceleration, turn_acceleration"
     )
     assert "did you mean 'obstacles'?" in only(GOOD + "obstacle: []")
     assert "did you mean 'weights'?" in only(GOOD + "planner: {name: fuzzy, wieghts: [1, 1]}")

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
-    ROBOT_RADIUS,
     Scenario,
     dump_scenario,
     find_conflicts,
@@ -64,7 +64,7 @@ def test_every_obstacle_is_inside_the_arena_and_clear_of_start_and_goal_and_none
     assert drawn.seed == seed
     assert np.all(at >= radius - 1e-5)
     assert np.all(at <= 10.0 - radius + 1e-5)
-    for centre, disc in (((1.0, 1.0), ROBOT_RADIUS), (goal, max(goal_radius, ROBOT_RADIUS))):
+    for centre, disc in (((1.0, 1.0), FUZZYQ.radius), (goal, max(goal_radius, FUZZYQ.radius))):
         assert np.all(np.hypot(*(at - centre).T) >= radius + disc + margin)
     assert not [c for c in find_conflicts(drawn) if c[0][0] == "obstacles"]
 

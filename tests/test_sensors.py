@@ -12,11 +12,10 @@ import pytest
 
 from fuzzyq_bullet.episode import Episode, run
 from fuzzyq_bullet.errors import SensorError
-from fuzzyq_bullet.physics.robot import BODY_HEIGHT
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning import ImprovedFuzzyPlanner, ImprovedFuzzySettings, RangeSensor
+from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
-    ROBOT_RADIUS,
     Arena,
     Cylinder,
     load_scenario,
@@ -24,7 +23,6 @@ from fuzzyq_bullet.scenario import (
     realise,
 )
 from fuzzyq_bullet.sensors import (
-    SENSOR_RANGE,
     SENSORS,
     CorridorSensor,
     ExactSensor,
@@ -43,13 +41,7 @@ def world():
 
 
 def sensor_of(world, model=None):
-    return CorridorSensor(
-        model or ExactSensor(),
-        world.cast,
-        radius=ROBOT_RADIUS,
-        height=BODY_HEIGHT,
-        rng=np.random.default_rng(0),
-    )
+    return CorridorSensor(model or ExactSensor(), world.cast, FUZZYQ, np.random.default_rng(0))
 
 
 def test_a_line_is_cast_once_and_told_as_often_as_asked(world):
@@ -158,7 +150,7 @@ def test_whatever_a_model_tells_a_line_stays_within_the_range(world):
         def measure(self, lengths, rng):
             return np.full_like(lengths, self.told)
 
-    for told, expected in ((0.0, 0.0), (7.0, SENSOR_RANGE), (math.inf, SENSOR_RANGE)):
+    for told, expected in ((0.0, 0.0), (7.0, FUZZYQ.sensor_range), (math.inf, FUZZYQ.sensor_range)):
         sensor = sensor_of(world, Blind(model="blind", told=told)).at((2.0, 2.0))
         assert sensor.sense([0.0, 1.0]) == [expected] * 2
-        assert sensor.look([0.0])[0] == min(told, SENSOR_RANGE + 0.22)
+        assert sensor.look([0.0])[0] == min(told, FUZZYQ.sensor_range + 0.22)

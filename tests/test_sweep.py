@@ -17,7 +17,7 @@ from conftest import FUZZYQ, Call, no_workers
 
 from fuzzyq_bullet import Trajectory, UserError, run
 from fuzzyq_bullet.cli.app import call
-from fuzzyq_bullet.oracle import feasible
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import Limits, realise
 from fuzzyq_bullet.studies.runner.jobs import Environment, Job

@@ -9,16 +9,10 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.physics.robot import BODY_HEIGHT, wheel_commands
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.scenario import MIN_RADIUS, ROBOT_RADIUS, Arena, Box, Cylinder
-from fuzzyq_bullet.sensors import (
-    SENSOR_MARGIN,
-    SENSOR_RANGE,
-    SPREAD,
-    CorridorSensor,
-    ExactSensor,
-)
+from fuzzyq_bullet.robots import FUZZYQ
+from fuzzyq_bullet.scenario import MIN_RADIUS, Arena, Box, Cylinder
+from fuzzyq_bullet.sensors import SENSOR_MARGIN, SPREAD, CorridorSensor, ExactSensor
 
 FIELD = Arena(size=(6.0, 6.0))
 
@@ -38,18 +32,12 @@ def box(x, y, length, width, yaw=0.0):
 
 
 def sensor_of(world):
-    return CorridorSensor(
-        ExactSensor(),
-        world.cast,
-        radius=ROBOT_RADIUS,
-        height=BODY_HEIGHT,
-        rng=np.random.default_rng(0),
-    )
+    return CorridorSensor(ExactSensor(), world.cast, FUZZYQ, np.random.default_rng(0))
 
 
 def run_into(world, x, y, heading, speed=0.3, steps=2000):
     world.robot.place(x, y, heading)
-    world.robot.command(*wheel_commands(speed, 0.0))
+    world.robot.command(*FUZZYQ.wheel_commands(speed, 0.0))
     return world.advance(steps)
 
 
@@ -85,7 +73,7 @@ def test_walls_stand_on_the_edges_and_only_where_they_are_wanted(engine):
         assert contact.body == world.walls
         state = world.robot.state()
         gaps = [state.x, state.y, 6.0 - state.x, 6.0 - state.y]
-        assert min(gaps) == pytest.approx(ROBOT_RADIUS, abs=0.005)
+        assert min(gaps) == pytest.approx(FUZZYQ.radius, abs=0.005)
     open_world = World([], Arena(size=(6.0, 6.0), walls=False), engine=engine)
     _, contact = run_into(open_world, 3.0, 3.0, 0.0, speed=0.6, steps=2400)
     assert contact is None
@@ -132,15 +120,15 @@ obstacle = st.one_of(
 )
 def test_a_line_is_never_longer_than_the_way_to_contact(engine, obstacles, origin, heading):
     field = Field.of(obstacles, FIELD)
-    if field.clearance([origin])[0] < ROBOT_RADIUS + 0.001:  # it touches something already
+    if field.clearance([origin])[0] < FUZZYQ.radius + 0.001:  # it touches something already
         return
     world = World(obstacles, FIELD, engine=engine)
     headings = heading + np.linspace(0.0, 6.0, 12)
     sensed = np.array(sensor_of(world).sense(origin, headings))
-    truth = field.free_distance(origin, headings, ROBOT_RADIUS, SENSOR_RANGE)
+    truth = field.free_distance(origin, headings, FUZZYQ.radius, FUZZYQ.sensor_range)
     assert (sensed <= truth + SENSOR_MARGIN).all()
     assert (sensed >= 0.0).all()
-    assert (sensed <= SENSOR_RANGE).all()
+    assert (sensed <= FUZZYQ.sensor_range).all()
 
 
 def test_lines_agree_with_exact_geometry_on_random_worlds(engine):
@@ -155,17 +143,17 @@ def test_lines_agree_with_exact_geometry_on_random_worlds(engine):
         ]
         field = Field.of(obstacles, FIELD)
         world = World(obstacles, FIELD, engine=engine)
-        wide = ROBOT_RADIUS + SENSOR_MARGIN
+        wide = FUZZYQ.radius + SENSOR_MARGIN
         for origin in rng.uniform(0.25, 5.75, (60, 2)):
             if field.clearance([origin])[0] < wide:
                 continue
             headings = rng.uniform(-math.pi, math.pi, 9)
-            truth = field.free_distance(origin, headings, wide, SENSOR_RANGE)
-            met = truth < SENSOR_RANGE  # a free line is right of itself and proves nothing
+            truth = field.free_distance(origin, headings, wide, FUZZYQ.sensor_range)
+            met = truth < FUZZYQ.sensor_range  # a free line is right of itself and proves nothing
             errors.append(np.abs(sensor_of(world).sense(tuple(origin), headings) - truth)[met])
     errors = np.concatenate(errors)
     assert errors.size > 1000
-    assert np.median(errors) <= 0.01 * SENSOR_RANGE
+    assert np.median(errors) <= 0.01 * FUZZYQ.sensor_range
 
 
 def test_nothing_of_the_least_width_slips_between_two_rays(engine):
@@ -175,7 +163,7 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
             world = World([shape(3.0 + lateral)], FIELD, engine=engine)
             [ahead] = sensor_of(world).sense((2.0, 3.0), [0.0])
             assert ahead < 0.5
-    offsets = (ROBOT_RADIUS + SENSOR_MARGIN) * np.concatenate([-SPREAD[::-1], SPREAD])
+    offsets = (FUZZYQ.radius + SENSOR_MARGIN) * np.concatenate([-SPREAD[::-1], SPREAD])
     assert np.diff(offsets).max() < least
 
 
@@ -184,8 +172,8 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
 def test_what_stands_beside_the_robot_does_not_stop_it(engine, side, length):
     # 1 cm beside its way, inside the margin of the line: it may go on, the geometry says so.
     world = World([box(3.0, 3.0 + side * 0.5, length, 1.0)], FIELD, engine=engine)
-    [along] = sensor_of(world).sense((3.0, 3.0 - side * (ROBOT_RADIUS + 0.01)), [0.0])
-    assert along == SENSOR_RANGE
+    [along] = sensor_of(world).sense((3.0, 3.0 - side * (FUZZYQ.radius + 0.01)), [0.0])
+    assert along == FUZZYQ.sensor_range
 
 
 def test_a_ray_meets_a_face_up_to_its_very_ends(engine):
@@ -209,7 +197,7 @@ def test_ten_thousand_obstacles_are_all_sensed(engine):
     for index in (0, 99, 4321, 9999):
         x, y = grid[index].position
         [ahead] = sensor_of(world).sense((x - 0.9, y), [0.0])
-        assert ahead == pytest.approx(0.9 - 0.2 - ROBOT_RADIUS - SENSOR_MARGIN, abs=0.01)
+        assert ahead == pytest.approx(0.9 - 0.2 - FUZZYQ.radius - SENSOR_MARGIN, abs=0.01)
 
 
 def test_an_engine_is_closed_once_and_for_all():

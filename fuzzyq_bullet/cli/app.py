@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzyq_bullet.cli import bench, check, explain, figure, report, run, scenarios, train
+from fuzzyq_bullet.cli import (
+    bench,
+    check,
+    explain,
+    figure,
+    import_map,
+    report,
+    run,
+    scenarios,
+    train,
+)
 from fuzzyq_bullet.cli.options import help_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
@@ -34,6 +44,7 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 _add("run", run.run)
 _add("replay", run.replay)
 _add("check", check.check)
+_add("import", import_map.import_map)
 _add("validate", scenarios.validate)
 _add("schema", scenarios.schema)
 _add("list", scenarios.list_scenarios)

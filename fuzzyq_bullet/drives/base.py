@@ -7,12 +7,12 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from fuzzyq_bullet.physics.robot import BODY_HEIGHT, RobotState
+from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Motion, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Motion, Observation
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Robot, Scenario
-from fuzzyq_bullet.sensors import SENSOR_RANGE, CorridorSensor
+from fuzzyq_bullet.scenario.models import Robot, Scenario
+from fuzzyq_bullet.sensors import CorridorSensor
 from fuzzyq_bullet.trajectory import Collision
 
 
@@ -35,10 +35,8 @@ class Driver(ABC):
     def __init__(self, world: SensorWorld, scenario: Scenario, motion: Motion | None) -> None:
         # The seed's third stream: the first places the obstacles, the second is the planner's.
         rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(2,)))
-        self._sensor = CorridorSensor(
-            scenario.sensor, world.cast, radius=ROBOT_RADIUS, height=BODY_HEIGHT, rng=rng
-        )
-        self._field = world.field
+        self._sensor = CorridorSensor(scenario.sensor, world.cast, scenario.robot.spec, rng)
+        self._field, self._radius = world.field, scenario.robot.radius
         self._goal = scenario.goal
         self._motion = motion
         self.ticks: list[RobotState] = []
@@ -59,10 +57,11 @@ class Driver(ABC):
             turn_rate=0.0 if still else now.turn_rate,
             goal=self._goal.position,
             goal_radius=self._goal.radius,
-            range=SENSOR_RANGE,
+            range=self._sensor.range,
             radius=self._sensor.radius,
             sensor=self._sensor.at((now.x, now.y)),
             motion=self._motion,
+            unit=self._radius,
         )
 
     @abstractmethod
@@ -79,4 +78,4 @@ def longest_step_time(robot: Robot) -> float:
     It ties the paper's steps to time: a decision's step is driven at ``step / longest_step_time``,
     so the longest one is driven at ``max_speed``.
     """
-    return LONGEST_STRIDE * STEP_UNIT / robot.max_speed
+    return LONGEST_STRIDE * robot.radius / robot.max_speed

@@ -8,7 +8,7 @@ from fuzzyq_bullet.drives.base import Driver, longest_step_time
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Robot, Scenario
+from fuzzyq_bullet.scenario.models import Robot, Scenario
 from fuzzyq_bullet.trajectory import Collision
 
 STEP_TIME = longest_step_time(Robot())
@@ -32,7 +32,7 @@ class KinematicDriver(Driver):
         now = self.ticks[-1]
         step = decision.step
         [free] = self._field.free_distance(
-            (now.x, now.y), decision.heading, ROBOT_RADIUS, step
+            (now.x, now.y), decision.heading, self._radius, step
         ).tolist()
         hit = free < step
         moved = min(step, free)

@@ -13,11 +13,11 @@ from fuzzyq_bullet.drives.velocity_controller import (
     limit_acceleration,
 )
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
-from fuzzyq_bullet.physics.robot import RobotState, wheel_commands
+from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning.base import Motion
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Scenario
+from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.sensors import SENSOR_MARGIN
 from fuzzyq_bullet.trajectory import Collision
 
@@ -60,7 +60,7 @@ class WheelsDriver(Driver):
             acceleration=limits.acceleration,
             turn_acceleration=limits.turn_acceleration,
             period=self._decision_ticks * tick_time,
-            radius=ROBOT_RADIUS,
+            radius=limits.radius,
             margin=SENSOR_MARGIN,
         )
         super().__init__(world, scenario, motion)
@@ -118,7 +118,7 @@ class WheelsDriver(Driver):
             if now != wanted:
                 stride = min(COMMAND_STEPS, left)
                 self._twist = now = limit_acceleration(now, wanted, limits, stride * TIME_STEP)
-                world.robot.command(*wheel_commands(*now))
+                world.robot.command(*world.model.wheel_commands(*now))
             taken, contact = world.advance(stride)
             self.steps += taken
             if contact is not None:

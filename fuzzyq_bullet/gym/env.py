@@ -80,7 +80,9 @@ class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         self._episode = None
         scenario = self._tasks.draw(self.np_random)
         self._engine = self._engine or Engine()
-        world = World(scenario.obstacles, scenario.arena, engine=self._engine)
+        world = World(
+            scenario.obstacles, scenario.arena, engine=self._engine, model=scenario.robot.spec
+        )
         self._scenario, self._episode = scenario, Episode(world, scenario)
         self._begin(scenario)
         return self._observed(), {"scenario": scenario.name, "seed": scenario.seed}

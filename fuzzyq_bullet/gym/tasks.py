@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, TypeAlias
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.oracle import feasible
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.scenario import (
     Scenario,
     check,

@@ -8,7 +8,7 @@ from fuzzyq_bullet.gym.env import EpisodeEnv
 from fuzzyq_bullet.gym.spaces import goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
 from fuzzyq_bullet.planning import MODES, Decision
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import with_options
@@ -97,7 +97,7 @@ class WeightsEnv(EpisodeEnv):
         now = self._now = episode.observe()
         seen = self._situation = self._planner.sense(now)
         left, middle, right = (length / now.range for length in seen.lengths)
-        most = now.range / STEP_UNIT
+        most = now.range / now.unit
         return {
             "left": left,
             "middle": middle,

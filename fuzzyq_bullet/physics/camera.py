@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.resources import asset
+from fuzzyq_bullet.physics.robot import load_robot
+from fuzzyq_bullet.robots import FUZZYQ, RobotModel
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,10 +32,8 @@ MAX_SIZE = 8192
 """Most pixels along a side of a picture; absurd sizes would kill the process."""
 
 _AROUND = np.arange(16) * (math.tau / 16)
-_HULL = np.array(
-    [(0.204 * math.cos(a), 0.204 * math.sin(a), z) for a in _AROUND for z in (0, 0.157)]
-)
-"""Points about the robot (m), base frame: a little wider than its disc, from wheels to lid."""
+_RIM, _LID = 0.004, 0.007
+"""How far a robot may reach beyond its footprint, and above its lid (m)."""
 _LIGHT: dict[str, Any] = {
     "lightDirection": (-4.0, -6.0, 11.0),
     "lightColor": (1.0, 1.0, 1.0),
@@ -206,11 +205,16 @@ def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Pic
 class RobotCamera:
     """Sees the robot alone, and of the picture only the rectangle that it covers."""
 
-    def __init__(self, lens: Lens, oversampling: int = 1) -> None:
+    def __init__(self, lens: Lens, model: RobotModel = FUZZYQ, oversampling: int = 1) -> None:
         self._lens = lens
         self._oversampling = oversampling
         self._engine = Engine()
-        self._robot = self._engine.load(asset("robot.urdf"), visible=True)
+        self._robot = load_robot(self._engine, model, visible=True)
+        wide, tall = model.radius + _RIM, model.height + _LID
+        # Points about the robot (m), base frame: a little wider than its disc, from wheels to lid.
+        self._hull = np.array(
+            [(wide * math.cos(a), wide * math.sin(a), z) for a in _AROUND for z in (0.0, tall)]
+        )
         # PyBullet places the centre of mass, everything else here speaks of the base frame.
         self._mass = self._engine.api.getDynamicsInfo(
             self._robot, -1, physicsClientId=self._engine.client
@@ -218,7 +222,7 @@ class RobotCamera:
 
     def window(self, position: tuple[float, float]) -> Window | None:
         """Return the part of the picture that the robot covers, or None when it is out of sight."""
-        corners = self._lens.project(np.add(_HULL, (*position, 0.0)))
+        corners = self._lens.project(np.add(self._hull, (*position, 0.0)))
         if not np.isfinite(corners).all():
             return None
         width, height = self._lens.size

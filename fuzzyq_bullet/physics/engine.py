@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -102,12 +102,20 @@ class Engine:
         )
         return body
 
-    def load_text(self, urdf: str) -> int:
-        """Load a fixed body from the text of a URDF and return its body id."""
+    def load_text(
+        self,
+        urdf: str,
+        meshes: Mapping[str, str] | None = None,
+        *,
+        fixed: bool = True,
+        visible: bool = False,
+    ) -> int:
+        """Load a body from the text of a URDF, and of the mesh files beside it; return its id."""
         with tempfile.TemporaryDirectory(prefix="fuzzyq-") as folder:
             path = Path(folder) / "body.urdf"
-            path.write_text(urdf)
-            return self.load(path, fixed=True)
+            for name, text in {"body.urdf": urdf, **(meshes or {})}.items():
+                (path.parent / name).write_text(text)
+            return self.load(path, fixed=fixed, visible=visible)
 
     def close(self) -> None:
         """Disconnect the client; a second call does nothing."""

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
+from fuzzyq_bullet.scenario.models import Arena
+from fuzzyq_bullet.shapes import Shape
 
 OBSTACLE_HEIGHT = 0.4
 """Height of every obstacle (m): well above the robot."""
@@ -16,9 +17,23 @@ WALL_HEIGHT = 0.25
 WALL_THICKNESS = 0.1
 
 
-def obstacles_urdf(obstacles: Sequence[Cylinder | Box]) -> str:
-    """Return a URDF with one link that holds a collision shape for every obstacle."""
-    return _static("obstacles", (_obstacle(obstacle) for obstacle in obstacles))
+def obstacles_urdf(obstacles: Sequence[Shape]) -> tuple[str, dict[str, str]]:
+    """Return a URDF with one link that holds a collision shape for every obstacle.
+
+    Returns:
+        The text, and the mesh files beside it that it names, text by name.
+    """
+    shapes: list[str] = []
+    meshes: dict[str, str] = {}
+    for obstacle in obstacles:
+        solid = obstacle.collision(OBSTACLE_HEIGHT)
+        geometry = solid.geometry
+        if solid.mesh:
+            name = f"{len(meshes)}.obj"
+            meshes[name] = solid.mesh
+            geometry = f'<mesh filename="{name}"/>'
+        shapes.append(_shape(*obstacle.position, OBSTACLE_HEIGHT, solid.yaw, geometry))
+    return _static("obstacles", shapes), meshes
 
 
 def walls_urdf(arena: Arena) -> str:
@@ -39,14 +54,6 @@ def walls_urdf(arena: Arena) -> str:
             ),
         ],
     )
-
-
-def _obstacle(obstacle: Cylinder | Box) -> str:
-    x, y = obstacle.position
-    if isinstance(obstacle, Cylinder):
-        geometry = f'<cylinder radius="{obstacle.radius!r}" length="{OBSTACLE_HEIGHT}"/>'
-        return _shape(x, y, OBSTACLE_HEIGHT, 0.0, geometry)
-    return _shape(x, y, OBSTACLE_HEIGHT, obstacle.yaw, _box(*obstacle.size, OBSTACLE_HEIGHT))
 
 
 def _box(length: float, width: float, height: float) -> str:

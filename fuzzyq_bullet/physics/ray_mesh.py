@@ -1,8 +1,7 @@
 """What the rays see: the upright faces of all obstacles and walls, as triangle meshes.
 
 A ray against a triangle mesh costs a fifth of a ray against the same convex shapes. Only rays meet
-these meshes; the robot's body meets the exact shapes of ``physics.obstacle_urdf``. Round faces
-become polygons around the circle, so that a distance is never told longer than it is.
+these meshes; the robot's body meets the exact shapes of ``physics.obstacle_urdf``.
 
 All rays run level, at one height. So a face needs no more than one triangle, that stands on this
 height and is there as wide as the face: half as many as would fill it, and a faster search.
@@ -10,17 +9,15 @@ height and is there as wide as the face: half as many as would fill it, and a fa
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
-from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
+from fuzzyq_bullet.scenario.models import Arena
+from fuzzyq_bullet.shapes import Shape
 
-ROUNDNESS = 0.001
-"""Greatest distance between a circle and its polygon (m)."""
 MESH_CORNERS = 30_000
 """Most corners of one mesh; PyBullet silently drops vertices beyond 131072."""
 
@@ -28,9 +25,9 @@ Outline = NDArray[np.float64]
 Mesh = tuple[list[list[float]], list[int]]
 
 
-def meshes(obstacles: Sequence[Cylinder | Box], arena: Arena) -> Iterator[Mesh]:
+def meshes(obstacles: Sequence[Shape], arena: Arena) -> Iterator[Mesh]:
     """Yield vertices and triangle indices of meshes that together show every face."""
-    outlines = [_outline(obstacle) for obstacle in obstacles]
+    outlines = [obstacle.faces() for obstacle in obstacles]
     if arena.walls:
         width, depth = arena.size
         outlines.append(np.array([(0, 0), (width, 0), (width, depth), (0, depth)], dtype=float))
@@ -44,21 +41,6 @@ def meshes(obstacles: Sequence[Cylinder | Box], arena: Arena) -> Iterator[Mesh]:
         corners += len(outline)
     if batch:
         yield _mesh(batch)
-
-
-def _outline(obstacle: Cylinder | Box) -> Outline:
-    """Return the corners of an obstacle seen from above, shape (K, 2)."""
-    if isinstance(obstacle, Cylinder):
-        # A polygon around a circle of radius r with K sides reaches r·(1/cos(π/K) − 1) beyond it.
-        half = math.acos(obstacle.radius / (obstacle.radius + ROUNDNESS))
-        angle = np.linspace(0.0, 2 * np.pi, math.ceil(np.pi / half), endpoint=False)
-        radius = obstacle.radius / math.cos(np.pi / angle.size)
-        local = radius * np.column_stack([np.cos(angle), np.sin(angle)])
-        return np.asarray(local + obstacle.position)
-    x, y = obstacle.size[0] / 2, obstacle.size[1] / 2
-    cos, sin = math.cos(obstacle.yaw), math.sin(obstacle.yaw)
-    corners = np.array([(x, y), (-x, y), (-x, -y), (x, -y)])
-    return np.asarray(corners @ np.array([[cos, sin], [-sin, cos]]) + obstacle.position)
 
 
 def _mesh(outlines: Sequence[Outline]) -> Mesh:

@@ -6,15 +6,7 @@ import math
 from typing import NamedTuple
 
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.resources import asset
-
-WHEEL_RADIUS = 0.05
-TRACK = 0.28
-"""Distance between the wheels (m)."""
-BODY_HEIGHT = 0.09
-"""Height of the middle of the body above the ground (m)."""
-MOTOR_TORQUE = 3.0
-"""Greatest torque of a wheel motor (N·m)."""
+from fuzzyq_bullet.robots import RobotModel
 
 
 class RobotState(NamedTuple):
@@ -44,10 +36,10 @@ class RobotState(NamedTuple):
 class Robot:
     """A differential drive: two velocity-controlled wheels and a caster without friction."""
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: Engine, model: RobotModel) -> None:
         self._engine = engine
         self._api = engine.api
-        self.body = engine.load(asset("robot.urdf"))
+        self.body = load_robot(engine, model)
         count = self._api.getNumJoints(self.body, physicsClientId=engine.client)
         names = {
             self._api.getJointInfo(self.body, index, physicsClientId=engine.client)[
@@ -57,7 +49,7 @@ class Robot:
         }
         self.links = tuple(names.values())
         self._wheels = (names["left_axle"], names["right_axle"])
-        self._forces = (MOTOR_TORQUE, MOTOR_TORQUE)
+        self._forces = (model.motor_torque, model.motor_torque)
         inertial = self._api.getDynamicsInfo(self.body, -1, physicsClientId=engine.client)[3]
         self._mass_x, _, self._mass_z = inertial
 
@@ -115,7 +107,8 @@ class Robot:
         )
 
 
-def wheel_commands(speed: float, turn_rate: float) -> tuple[float, float]:
-    """Return the wheel speeds (rad/s) of an ideal differential drive for a twist (m/s, rad/s)."""
-    half = turn_rate * TRACK / 2
-    return (speed - half) / WHEEL_RADIUS, (speed + half) / WHEEL_RADIUS
+def load_robot(engine: Engine, model: RobotModel, *, visible: bool = False) -> int:
+    """Load a robot from its URDF and return its body id; its visuals only if ``visible``."""
+    if model.urdf_file is not None:
+        return engine.load(model.urdf_file, visible=visible)
+    return engine.load_text(model.urdf(), fixed=False, visible=visible)

@@ -10,8 +10,9 @@ from typing import TypeAlias, TypeVar
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.ray_mesh import meshes
-from fuzzyq_bullet.physics.robot import BODY_HEIGHT
-from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
+from fuzzyq_bullet.robots import FUZZYQ, RobotModel
+from fuzzyq_bullet.scenario.models import Arena
+from fuzzyq_bullet.shapes import Shape
 
 Point: TypeAlias = tuple[float, float, float]
 
@@ -44,6 +45,7 @@ class SensorWorld:
         obstacles: All obstacles, already validated.
         arena: The rectangle, with or without walls.
         engine: An engine to build in, emptied first; by default a new one that is owned.
+        model: The robot that looks around.
 
     Attributes:
         obstacles: What it was built of.
@@ -53,12 +55,14 @@ class SensorWorld:
 
     def __init__(
         self,
-        obstacles: Sequence[Cylinder | Box],
+        obstacles: Sequence[Shape],
         arena: Arena,
         *,
         engine: Engine | None = None,
+        model: RobotModel = FUZZYQ,
     ) -> None:
         self.obstacles, self.arena = tuple(obstacles), arena
+        self.model = model
         self.field = Field.of(obstacles, arena)
         self._owns_engine = engine is None
         self.engine = engine or Engine()
@@ -67,7 +71,7 @@ class SensorWorld:
         self._build(obstacles, arena)
 
     def cast(self, starts: Sequence[Point], ends: Sequence[Point]) -> list[float]:
-        """Cast rays against the faces of everything; they must be level, at ``BODY_HEIGHT``.
+        """Cast rays against the faces of everything; level, at the height of the robot's sensor.
 
         Args:
             starts: Where they start (m).
@@ -92,7 +96,7 @@ class SensorWorld:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _build(self, obstacles: Sequence[Cylinder | Box], arena: Arena) -> None:
+    def _build(self, obstacles: Sequence[Shape], arena: Arena) -> None:
         """Put all that is to be there into the engine."""
         for mesh in meshes(obstacles, arena):
             self._group(self._build_faces(*mesh), -1, Group.FACES, Group.RAYS)
@@ -119,6 +123,6 @@ class SensorWorld:
         vertices.clear()
         triangles.clear()
         body: int = self._api.createMultiBody(
-            0.0, shape, basePosition=(0.0, 0.0, BODY_HEIGHT), physicsClientId=client
+            0.0, shape, basePosition=(0.0, 0.0, self.model.sensor_height), physicsClientId=client
         )
         return body

@@ -8,7 +8,8 @@ from fuzzyq_bullet.physics.engine import Contact
 from fuzzyq_bullet.physics.obstacle_urdf import obstacles_urdf, walls_urdf
 from fuzzyq_bullet.physics.robot import Robot
 from fuzzyq_bullet.physics.sensor_world import Group, SensorWorld
-from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
+from fuzzyq_bullet.scenario.models import Arena
+from fuzzyq_bullet.shapes import Shape
 
 
 class World(SensorWorld):
@@ -18,15 +19,17 @@ class World(SensorWorld):
         obstacles: All obstacles, already validated.
         arena: The rectangle, with or without walls.
         engine: An engine to build in, emptied first; by default a new one that the world owns.
+        model: The robot.
     """
 
-    def _build(self, obstacles: Sequence[Cylinder | Box], arena: Arena) -> None:
+    def _build(self, obstacles: Sequence[Shape], arena: Arena) -> None:
         # The order of loading is part of the trajectory: ground, obstacles, walls, faces, robot.
         ground = self._build_ground()
-        self.obstacle_body = self.engine.load_text(obstacles_urdf(obstacles)) if obstacles else None
+        urdf = obstacles_urdf(obstacles) if obstacles else None
+        self.obstacle_body = self.engine.load_text(*urdf) if urdf else None
         self.walls = self.engine.load_text(walls_urdf(arena)) if arena.walls else None
         super()._build(obstacles, arena)
-        self.robot = Robot(self.engine)
+        self.robot = Robot(self.engine, self.model)
 
         self._group(ground, -1, Group.GROUND, Group.WHEELS)
         self._group(self.robot.body, -1, Group.BODY, Group.OBSTACLES | Group.WALLS)

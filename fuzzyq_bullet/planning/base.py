@@ -16,7 +16,7 @@ from fuzzyq_bullet.planning.decision import Decision, Numbers
 Floats: TypeAlias = NDArray[np.float64]
 
 STEP_UNIT = 0.2
-"""S_p, the standard single step (m): the unit of the fuzzy controller."""
+"""S_p of the default robot, the standard single step (m): the unit of the fuzzy controller."""
 LONGEST_STRIDE = 2.0
 """Upper end of N_s: the longest step is this many S_p."""
 
@@ -166,6 +166,7 @@ class Observation:
         sensor: What else can be sensed at this instant.
         motion: Limits of a body that must turn and brake, or None for the paper's point robot,
             which faces any way at once and stops at once (Eq. 17).
+        unit: S_p, the unit of the fuzzy controller (m): the robot's radius.
     """
 
     time: float
@@ -179,6 +180,7 @@ class Observation:
     radius: float
     sensor: RangeSensor = field(compare=False, repr=False)
     motion: Motion | None = None
+    unit: float = STEP_UNIT
 
     def sense(self, headings: Sequence[float]) -> list[float]:
         """Return the free distance (m) along each of the world headings (rad).

@@ -13,17 +13,17 @@ from __future__ import annotations
 
 import math
 
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Observation
 from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.exploration import ExplorationGraph
 from fuzzyq_bullet.planning.frontiers import Frontier
 from fuzzyq_bullet.planning.path_follower import NEARER, PathFollower
 from fuzzyq_bullet.planning.ray_search import eased, ray_search
 
-ENOUGH = 1.0 * STEP_UNIT
-"""How much must be free after the turn of the plain breakout (m; Fig. 6)."""
-GAIN = 1.0 * STEP_UNIT
-"""The line to the goal is taken again if it leads so much nearer than ever before (m)."""
+ENOUGH = 1.0
+"""How much must be free after the turn of the plain breakout, in S_p (Fig. 6)."""
+GAIN = 1.0
+"""The line to the goal is taken again if it leads so much nearer than ever before, in S_p."""
 PATIENCE = 2.5
 """Time without coming nearer to the goal after which the routine part has failed (s); longer for a
 slow robot."""
@@ -61,13 +61,13 @@ class Escape:
         here, goal = observation.position, observation.goal
         to_goal = math.dist(here, goal)
         middle = routine.lengths[1]
-        enough = min(routine.breakout_at * STEP_UNIT, to_goal)
+        enough = min(routine.breakout_at * observation.unit, to_goal)
         if to_goal < self._nearest - NEARER:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._graph.pass_by(here)
 
         if self._frontier is not None:
-            nearer = middle >= to_goal or to_goal - middle <= self._mark - GAIN
+            nearer = middle >= to_goal or to_goal - middle <= self._mark - GAIN * observation.unit
             if not nearer or middle < enough:
                 return self._follow(routine, observation)
             self._frontier, self._straight = None, True
@@ -111,7 +111,7 @@ class Escape:
             self._scan(observation)
         if self._frontier is None or segment is None:
             return routine._replace(step=0.0, reach=0.0, mode=mode, hopeless=True)
-        step = routine.weights[0] * LONGEST_STRIDE * STEP_UNIT
+        step = routine.weights[0] * LONGEST_STRIDE * observation.unit
         return routine._replace(
             heading=segment.heading,
             step=step if observation.motion is not None else min(step, segment.length),
@@ -134,7 +134,9 @@ def _break_out(routine: Decision, observation: Observation, middle: float) -> De
     """Take the smaller turn, left or right, that is free (4.2, Algorithm 1, Fig. 6)."""
     bearing = routine.lines[1]
     # A stalled robot may have its line free for a while: the obstacle at its end counts.
-    enough = max(ENOUGH, middle + 0.25 * STEP_UNIT) if middle < observation.range else ENOUGH
+    enough = least = ENOUGH * observation.unit
+    if middle < observation.range:
+        enough = max(least, middle + 0.25 * observation.unit)
     tie = 1 if routine.difference >= 0.0 else -1
     sides = [
         (side, found)
@@ -149,10 +151,10 @@ def _break_out(routine: Decision, observation: Observation, middle: float) -> De
     # T of Eqs. 24 to 26, but no farther than is known to be free.
     length = min(found.free, max(0.0, to_goal * math.cos(found.heading - bearing)))
     x, y = observation.position
-    step = routine.weights[0] * LONGEST_STRIDE * STEP_UNIT
+    step = routine.weights[0] * LONGEST_STRIDE * observation.unit
     return routine._replace(
         heading=found.heading,
-        step=step if observation.motion is not None else min(ENOUGH, found.free),
+        step=step if observation.motion is not None else min(least, found.free),
         mode="breakout",
         target=(x + length * math.cos(found.heading), y + length * math.sin(found.heading)),
     )

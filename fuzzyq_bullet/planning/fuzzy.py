@@ -29,6 +29,7 @@ class Situation(NamedTuple):
         difference: Df, in units of S_p (Eq. 14).
         clear: Whether the middle line is free up to the goal, or as far as the robot sees.
         inferred: What the controller infers from d and Df.
+        unit: S_p (m).
     """
 
     bearing: float
@@ -39,6 +40,7 @@ class Situation(NamedTuple):
     difference: float
     clear: bool
     inferred: Inference
+    unit: float = STEP_UNIT
 
 
 class Routine:
@@ -55,7 +57,7 @@ class Routine:
 
     def sense(self, observation: Observation) -> Situation:
         """Cast the three lines (Steps 4 to 6) and ask the controller (Step 9; Eqs. 13, 14)."""
-        settings = self._settings
+        settings, unit = self._settings, observation.unit
         dx = observation.goal[0] - observation.position[0]
         dy = observation.goal[1] - observation.position[1]
         to_goal = math.hypot(dx, dy)
@@ -66,12 +68,13 @@ class Routine:
 
         clear = middle >= min(observation.range, to_goal)
         if clear:
-            distance, difference = observation.range / STEP_UNIT, 0.0
+            distance, difference = observation.range / unit, 0.0
         else:
             nearest = middle if settings.distance == "middle" else min(left, middle, right)
-            distance, difference = nearest / STEP_UNIT, (left - right) / STEP_UNIT  # Eqs. 13, 14
+            distance, difference = nearest / unit, (left - right) / unit  # Eqs. 13, 14
         inferred = self._controller.infer(distance, difference)
-        return Situation(bearing, to_goal, lines, lengths, distance, difference, clear, inferred)
+        told = (bearing, to_goal, lines, lengths, distance, difference, clear, inferred)
+        return Situation(*told, unit)
 
     def step(
         self,
@@ -90,7 +93,7 @@ class Routine:
         inferred = situation.inferred
         return Decision(
             heading=situation.bearing + w2 * inferred.turn * self._settings.turn_unit,
-            step=min(w1 * inferred.stride * STEP_UNIT, situation.to_goal),
+            step=min(w1 * inferred.stride * situation.unit, situation.to_goal),
             lines=situation.lines,
             lengths=situation.lengths,
             distance=situation.distance,

@@ -14,7 +14,6 @@ from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import (
     MAX_OBSTACLES,
     MIN_RADIUS,
-    ROBOT_RADIUS,
     Arena,
     Box,
     Cylinder,
@@ -28,13 +27,12 @@ from fuzzyq_bullet.scenario.models import (
     Start,
 )
 from fuzzyq_bullet.scenario.options import with_options
+from fuzzyq_bullet.scenario.random_tasks import random_task
 from fuzzyq_bullet.scenario.schema import scenario_schema
-from fuzzyq_bullet.scenario.tasks import random_task
 
 __all__ = [
     "MAX_OBSTACLES",
     "MIN_RADIUS",
-    "ROBOT_RADIUS",
     "Arena",
     "Box",
     "Cylinder",

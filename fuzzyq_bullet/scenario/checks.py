@@ -6,15 +6,18 @@ its test, for obstacles from any source.
 
 from __future__ import annotations
 
+import math
 from typing import TypeAlias
 
 import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Box, Obstacle, Scenario
+from fuzzyq_bullet.quantities import TOUCH
+from fuzzyq_bullet.scenario.layouts.placing import separated
+from fuzzyq_bullet.scenario.models import Obstacle, Scenario
 from fuzzyq_bullet.scenario.problems import MAX_SHOWN, Loc, key_path
-from fuzzyq_bullet.scenario.shapes import TOUCH
+from fuzzyq_bullet.shapes.motion import STILL
 
 Conflict: TypeAlias = tuple[Loc, str]
 
@@ -25,12 +28,13 @@ def find_conflicts(scenario: Scenario) -> list[Conflict]:
     Conflicts are: start or goal outside the arena; the robot's disc at the start, or at the centre
     of the goal, touching a wall or an obstacle; a start within the goal (a run of no steps, with
     no shortest path to measure it by); an obstacle wholly outside the walls; obstacles to be drawn
-    that are too large for the arena or too many. Obstacles may overlap each other and poke through
-    walls.
+    that are too large for the arena or too many; an obstacle that moves. Obstacles may overlap each
+    other and poke through walls.
     """
     return [
         *_places(scenario),
         *_obstacles(scenario),
+        *_motions(scenario),
         *_random(scenario),
     ]
 
@@ -59,8 +63,13 @@ def _places(scenario: Scenario) -> list[Conflict]:
             found.append(
                 ((key, "position"), f"({x:g}, {y:g}) is outside the arena, {width:g} × {depth:g} m")
             )
-        elif scenario.arena.walls and gap <= ROBOT_RADIUS + TOUCH:
-            found.append(((key, "position"), f"is {gap:.3g} m from a wall; {_remedy(gap)}"))
+        elif scenario.arena.walls and gap <= scenario.robot.radius + TOUCH:
+            found.append(
+                (
+                    (key, "position"),
+                    f"is {gap:.3g} m from a wall; {_remedy(gap, scenario.robot.radius)}",
+                )
+            )
     apart = float(np.hypot(*np.subtract(scenario.start.position, scenario.goal.position)))
     if apart <= scenario.goal.radius:
         found.append(
@@ -74,14 +83,15 @@ def _places(scenario: Scenario) -> list[Conflict]:
 
 
 def _obstacles(scenario: Scenario) -> list[Conflict]:
-    field = Field.of(scenario.obstacles)
+    field, radius = Field.of(scenario.obstacles), scenario.robot.radius
     by_index: dict[int, Conflict] = {}
     for name, place in (("goal", scenario.goal), ("start", scenario.start)):
         x, y = place.position
         gaps = field.distances(place.position)
-        for i in np.flatnonzero(gaps <= ROBOT_RADIUS + TOUCH).tolist():
+        for i in np.flatnonzero(gaps <= radius + TOUCH).tolist():
             where = f"{-gaps[i]:.3g} m inside it" if gaps[i] < 0 else f"{gaps[i]:.3g} m from it"
-            message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; {_remedy(gaps[i])}"
+            message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; "
+            message += _remedy(gaps[i], radius)
             by_index[i] = (("obstacles", i), message)
     if scenario.arena.walls:
         width, depth = scenario.arena.size
@@ -94,6 +104,16 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
     return [by_index[i] for i in sorted(by_index)]
 
 
+def _motions(scenario: Scenario) -> list[Conflict]:
+    """Return the obstacles that would move: the physics cannot move them yet."""
+    times = np.linspace(0.0, scenario.limits.time, 50).tolist()
+    return [
+        (("obstacles", i, "motion"), f"moves, and obstacles cannot move yet; allowed: {STILL.kind}")
+        for i, item in enumerate(scenario.obstacles)
+        if item.motion is not STILL and any(map(any, map(item.motion.pose, times)))
+    ]
+
+
 def _random(scenario: Scenario) -> list[Conflict]:
     if scenario.random is None:
         return []
@@ -101,27 +121,17 @@ def _random(scenario: Scenario) -> list[Conflict]:
 
 
 def _is_outside(item: Obstacle, width: float, depth: float) -> bool:
-    """Tell whether no part of an obstacle is inside the arena (separating axes, exactly)."""
-    x, y = item.position
-    beside_x, beside_y = max(-x, x - width, 0.0), max(-y, y - depth, 0.0)
-    if not isinstance(item, Box):
-        return bool(np.hypot(beside_x, beside_y) >= item.radius)
-    if beside_x == 0.0 and beside_y == 0.0:
-        return False
-    c, s = np.cos(item.yaw), np.sin(item.yaw)
-    hx, hy = item.size[0] / 2, item.size[1] / 2
-    ax, ay = width / 2, depth / 2
-    dx, dy = x - ax, y - ay
-    gaps = (
-        abs(dx) - ax - hx * abs(c) - hy * abs(s),
-        abs(dy) - ay - hx * abs(s) - hy * abs(c),
-        abs(dx * c + dy * s) - hx - ax * abs(c) - ay * abs(s),
-        abs(dy * c - dx * s) - hy - ax * abs(s) - ay * abs(c),
-    )
-    return bool(max(gaps) >= 0.0)
+    """Tell whether no part of an obstacle is inside the arena (exactly)."""
+    points, radius = item.corners()
+    if len(points) == 1:
+        (x, y), *_ = points.tolist()
+        beside_x, beside_y = max(-x, x - width, 0.0), max(-y, y - depth, 0.0)
+        return math.hypot(beside_x, beside_y) >= radius
+    arena = np.array([(0.0, 0.0), (width, 0.0), (width, depth), (0.0, depth)])
+    return separated(arena, item.outline())
 
 
-def _remedy(gap: float) -> str:
+def _remedy(gap: float, radius: float) -> str:
     """Say how far to move what leaves the robot's centre this gap (m), negative inside it."""
-    lacking = max(round(ROBOT_RADIUS - gap, 3), 0.001)
-    return f"the robot needs more than {ROBOT_RADIUS:g} m: move it by more than {lacking:g} m"
+    lacking = max(round(radius - gap, 3), 0.001)
+    return f"the robot needs more than {radius:g} m: move it by more than {lacking:g} m"

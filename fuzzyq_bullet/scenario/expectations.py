@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationInfo, create_model
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.scenario.shapes import Model, Number
+from fuzzyq_bullet.quantities import Model, Number
 from fuzzyq_bullet.wording import error_in_words
 
 OutcomeName: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]

@@ -6,15 +6,17 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+import numpy as np
 import yaml
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes, written_beside
+from fuzzyq_bullet.planning.registry import make_planner
+from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.resources import data_folder
 from fuzzyq_bullet.scenario.checks import find_conflicts
 from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, Scenario
-from fuzzyq_bullet.scenario.policy import policy_problem, with_policy_in
 from fuzzyq_bullet.scenario.problems import (
     MAX_SHOWN,
     MAX_WORDED,
@@ -94,10 +96,10 @@ def parse_scenario(
     else:
         _refuse_unwritable(scenario, f"{where}:{tree.lines.get('planner', tree.line)}")
         if folder is not None:
-            scenario = with_policy_in(scenario, folder)
+            scenario = _with_policy_in(scenario, folder)
         problems = [Problem(loc, message) for loc, message in find_conflicts(scenario)]
         if policies:
-            unfit = policy_problem(scenario, planner_is_given="planner" in tree.data)
+            unfit = _policy_problem(scenario, planner_is_given="planner" in tree.data)
             problems += [unfit] if unfit else []
         if not problems:
             return scenario
@@ -116,6 +118,40 @@ def _refuse_unwritable(scenario: Scenario, where: str) -> None:
         raise UserError(
             f"{where}: planner: its settings cannot be written as JSON: {error_in_words(error)}"
         ) from error
+
+
+def _with_policy_in(scenario: Scenario, folder: Path) -> Scenario:
+    """Return the scenario with the path of its policy made absolute, if it names one.
+
+    So it means the same file wherever the scenario is written to, or run from, later on.
+
+    Args:
+        scenario: A scenario as its file says.
+        folder: Folder of that file, in which a relative path begins.
+    """
+    planner = scenario.planner
+    if not isinstance(planner, PolicySettings) or planner.policy is None:
+        return scenario
+    path = str((folder / planner.policy).absolute())
+    return scenario.model_copy(update={"planner": planner.model_copy(update={"policy": path})})
+
+
+def _policy_problem(scenario: Scenario, *, planner_is_given: bool) -> Problem | None:
+    """Return what keeps the planner from using its policy, if anything does.
+
+    Args:
+        scenario: The scenario, its policy where it lies.
+        planner_is_given: Whether the file has a key ``planner`` at all.
+    """
+    if not isinstance(scenario.planner, PolicySettings):
+        return None
+    try:
+        # The planner itself knows best what fits it. What it would draw from is of no matter.
+        make_planner(scenario.planner, np.random.default_rng(0))
+    except UserError as error:
+        loc = ("planner", "policy") if planner_is_given else ("planner",)
+        return Problem(loc, error.problems[0], missing=True)
+    return None
 
 
 def find_scenario(source: Source) -> Path:

@@ -12,37 +12,40 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import (
+    AfterValidator,
     BeforeValidator,
     Field,
     SerializeAsAny,
+    SerializerFunctionWrapHandler,
     ValidationError,
     ValidationInfo,
     ValidatorFunctionWrapHandler,
     WrapValidator,
+    field_serializer,
+    model_validator,
 )
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
 from fuzzyq_bullet.planning.settings import PlannerSettings
-from fuzzyq_bullet.scenario.expectations import ANY_NAME, AnyExpect, Expect, OutcomeName
-from fuzzyq_bullet.scenario.layouts.registry import AnyLayout
-from fuzzyq_bullet.scenario.layouts.scatter import Random
-from fuzzyq_bullet.scenario.shapes import (
+from fuzzyq_bullet.quantities import (
     MAX_OBSTACLES,
     MIN_RADIUS,
-    ROBOT_RADIUS,
     Angle,
-    Box,
     Count,
-    Cylinder,
     Flag,
     Length,
     Model,
     Number,
-    Obstacle,
     Point,
 )
+from fuzzyq_bullet.robots import FUZZYQ, RobotModel, robot_model, robot_names
+from fuzzyq_bullet.robots.base import Acceleration, MaxSpeed, MaxTurnRate, TurnAcceleration
+from fuzzyq_bullet.scenario.expectations import ANY_NAME, AnyExpect, Expect, OutcomeName
+from fuzzyq_bullet.scenario.layouts import AnyLayout, Random
 from fuzzyq_bullet.sensors.base import SENSORS, AnySensor, ExactSensor, SensorModel
+from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
+from fuzzyq_bullet.shapes.motion import STILL
 
 Drive: TypeAlias = Literal["wheels", "kinematic"]
 
@@ -73,21 +76,48 @@ class Goal(Model):
     )
 
 
-class Robot(Model):
-    """Limits of the robot's motion. Its shape is that of ``assets/robot.urdf``."""
+def _known_robot(name: str) -> str:
+    if name not in robot_names():
+        raise PydanticCustomError("unknown_robot", "must be one of {allowed}", {"allowed": name})
+    return name
 
-    max_speed: Annotated[Number, Field(ge=0.05, le=1.0)] = Field(
-        default=0.6, description="Greatest speed (m/s)."
+
+class Robot(Model):
+    """The robot, and limits of its motion: those of its model, where they are not given."""
+
+    model: Annotated[str, AfterValidator(_known_robot)] = Field(
+        default=FUZZYQ.name,
+        description="Which robot it is.",
+        json_schema_extra=lambda schema: schema.update(enum=list(robot_names())),
     )
-    max_turn_rate: Annotated[Number, Field(ge=0.2, le=3.0)] = Field(
-        default=2.0, description="Greatest turn rate (rad/s)."
+    max_speed: MaxSpeed = Field(default=FUZZYQ.max_speed, description="Greatest speed (m/s).")
+    max_turn_rate: MaxTurnRate = Field(
+        default=FUZZYQ.max_turn_rate, description="Greatest turn rate (rad/s)."
     )
-    acceleration: Annotated[Number, Field(ge=0.1, le=2.0)] = Field(
-        default=1.0, description="Greatest change of speed, up or down (m/s²)."
+    acceleration: Acceleration = Field(
+        default=FUZZYQ.acceleration, description="Greatest change of speed, up or down (m/s²)."
     )
-    turn_acceleration: Annotated[Number, Field(ge=0.5, le=10.0)] = Field(
-        default=6.0, description="Greatest change of the turn rate (rad/s²)."
+    turn_acceleration: TurnAcceleration = Field(
+        default=FUZZYQ.turn_acceleration, description="Greatest change of the turn rate (rad/s²)."
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_limits_of_its_model(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or data.get("model") not in robot_names():
+            return data
+        limits = robot_model(data["model"]).model_dump(include=set(cls.model_fields) - {"model"})
+        return {**limits, **data}
+
+    @property
+    def spec(self) -> RobotModel:
+        """Footprint, wheels, masses and URDF of the robot."""
+        return robot_model(self.model)
+
+    @property
+    def radius(self) -> float:
+        """Radius of the robot's footprint (m): the paper's unit S_p."""
+        return self.spec.radius
 
 
 class Limits(Model):
@@ -105,6 +135,7 @@ def _default_planner() -> PlannerSettings:
     return settings_for(DEFAULT_PLANNER).model_validate({"name": DEFAULT_PLANNER})
 
 
+_AT_REST = STILL.model_dump()
 _LONGEST_NAME = 100
 
 
@@ -176,6 +207,15 @@ class Scenario(Model):
     limits: Limits = Limits()
     expect: AnyExpect = Expect()
 
+    @field_serializer("obstacles", mode="wrap")
+    def _without_rest(self, value: Any, handler: SerializerFunctionWrapHandler) -> Any:
+        """Leave out that obstacles stand still: a file of ten thousand need not say so."""
+        told = handler(value)
+        for item in told:
+            if item.get("motion") == _AT_REST:
+                del item["motion"]
+        return told
+
     def start_heading(self) -> float:
         """Return the heading at the start (rad); towards the goal when none is given."""
         if self.start.heading is not None:
@@ -189,7 +229,6 @@ __all__ = [
     "ANY_NAME",
     "MAX_OBSTACLES",
     "MIN_RADIUS",
-    "ROBOT_RADIUS",
     "Angle",
     "Arena",
     "Box",

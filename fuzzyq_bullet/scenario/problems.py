@@ -11,10 +11,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from pydantic import BaseModel, ValidationError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner_names, settings_for
+from fuzzyq_bullet.quantities import ANGLE_KEYS
+from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.robots import no_robot
 from fuzzyq_bullet.scenario.expectations import expect_model
-from fuzzyq_bullet.scenario.models import Obstacle, Scenario
-from fuzzyq_bullet.scenario.shapes import ANGLE_KEYS
+from fuzzyq_bullet.scenario.layouts import LAYOUTS
+from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.sensors import SENSORS
+from fuzzyq_bullet.shapes import MOTIONS, SHAPES
 from fuzzyq_bullet.wording import did_you_mean, shorten
 
 if TYPE_CHECKING:
@@ -94,14 +98,17 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
         what = "unknown key" + _known_elsewhere(loc)
         return Problem(loc, _refusal(what, loc[-1], _keys_at(tuple(error["loc"][:-1]), data)))
     if kind == "union_tag_not_found":
-        shapes = ", ".join(_SHAPES)
-        return Problem((*loc, "shape"), f"is required; allowed: {shapes}", missing=True)
+        key = context["discriminator"].strip("'")
+        names = ", ".join(_NAMES[key]())
+        return Problem((*loc, key), f"is required; allowed: {names}", missing=True)
     if kind == "union_tag_invalid":
         key, tag = context["discriminator"].strip("'"), context["tag"]
         allowed = re.findall("'([^']*)'", context["expected_tags"])
         return Problem((*loc, key), _refusal(f"no {key} {shorten(tag)}", tag, allowed))
     if kind == "unknown_planner":
         return Problem(loc, no_planner(value))
+    if kind == "unknown_robot":
+        return Problem(loc, no_robot(value))
     if kind == "literal_error":
         allowed = re.findall("'([^']*)'", context["expected"])
         return Problem(loc, _refusal(f"got {shorten(value)}", value, allowed))
@@ -113,10 +120,13 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
 
 
 def _without_tag(loc: Loc) -> Loc:
-    """Drop the names of shape, layout and sensor, which pydantic puts behind their places."""
+    """Drop the names that pydantic puts behind their places: shape, motion, layout and sensor."""
     if loc[0] in ("random", "sensor"):
         return loc[:1] + loc[2:]
-    return loc[:2] + loc[3:] if loc[0] == "obstacles" and loc[2:3] and loc[2] in _SHAPES else loc
+    if loc[0] != "obstacles" or loc[2:3] == () or loc[2] not in SHAPES.names():
+        return loc
+    loc = loc[:2] + loc[3:]
+    return loc[:3] + loc[4:] if loc[2:3] == ("motion",) else loc
 
 
 def _refusal(what: str, word: Any, allowed: Sequence[str]) -> str:
@@ -181,11 +191,8 @@ _WORDING: dict[str, Callable[[Any, dict[str, Any]], str]] = {
     "less_than_equal": _bound("at most", "le"),
 }
 
-_SHAPES = tuple(
-    shape
-    for kind in typing.get_args(typing.get_args(Obstacle)[0])
-    for shape in typing.get_args(kind.model_fields["shape"].annotation)
-)
+_NAMES = {one.key: one.names for one in (SHAPES, MOTIONS, LAYOUTS)}
+"""The names that are registered, by the key that gives one."""
 
 
 def _keys_at(loc: Loc, data: Any) -> list[str]:
@@ -215,12 +222,12 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         yield annotation
     for inner in typing.get_args(annotation):
-        yield from _models_in(inner)
+        yield from inner if isinstance(inner, ModelRegistry) else _models_in(inner)
 
 
 def _tags(kind: type[BaseModel]) -> tuple[Any, ...]:
     """Return the values that choose this model among others, as pydantic puts them into places."""
-    for key in ("shape", "layout", "model"):
+    for key in _NAMES:
         if key in kind.model_fields:
             return typing.get_args(kind.model_fields[key].annotation)
     return ()

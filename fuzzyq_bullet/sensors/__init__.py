@@ -7,12 +7,11 @@ from fuzzyq_bullet.sensors.base import (
     SensorModel,
     register_sensor,
 )
-from fuzzyq_bullet.sensors.corridor import SENSOR_MARGIN, SENSOR_RANGE, SPREAD, CorridorSensor
+from fuzzyq_bullet.sensors.corridor import SENSOR_MARGIN, SPREAD, CorridorSensor
 
 __all__ = [
     "SENSORS",
     "SENSOR_MARGIN",
-    "SENSOR_RANGE",
     "SPREAD",
     "AnySensor",
     "CorridorSensor",

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.planning.base import RangeSensor
+from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.sensors.base import SensorModel
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -20,8 +21,6 @@ Cast: TypeAlias = Callable[[Sequence[Point3], Sequence[Point3]], Sequence[float]
 """From where rays start and end (m) to the part of each that is free, in [0, 1]; 1 where it meets
 nothing."""
 
-SENSOR_RANGE = 1.0
-"""Longest distance a detection line tells (m): 5·S_p."""
 SENSOR_MARGIN = 0.02
 """How much wider than the robot a detection line is, on either side (m)."""
 SPREAD = np.array([0.11, 0.33, 0.55, 0.75, 0.91, 1.0])
@@ -46,40 +45,35 @@ class CorridorSensor:
     Args:
         model: What is told of the rays' lengths.
         cast: Casts rays.
-        radius: Radius of the robot (m).
-        height: Height of the rays above the ground (m).
+        robot: The robot, whose radius, sensor height and range they have.
         rng: Random numbers of the model.
 
     Attributes:
         radius: Half the width of a detection line (m).
+        range: Longest distance that a detection line tells (m): 5·S_p.
     """
 
     def __init__(
-        self,
-        model: SensorModel,
-        cast: Cast,
-        *,
-        radius: float,
-        height: float,
-        rng: np.random.Generator,
+        self, model: SensorModel, cast: Cast, robot: RobotModel, rng: np.random.Generator
     ) -> None:
         self._model = model
         self._cast = cast
-        self._height = height
+        self._height = robot.sensor_height
         self._rng = rng
-        self.radius = wide = radius + SENSOR_MARGIN
+        self.radius = wide = robot.radius + SENSOR_MARGIN
+        self.range = robot.sensor_range
         aside = wide * SPREAD
         rims = np.sqrt(wide**2 - aside**2)
         self._rims = np.repeat(rims, 2)
-        self._lengths = np.append(np.repeat(rims + SENSOR_RANGE, 2), [SENSOR_MARGIN] * 2)
+        self._lengths = np.append(np.repeat(rims + self.range, 2), [SENSOR_MARGIN] * 2)
         # Of each ray of a line, the two probes last: how far to the right it starts and ends, and
         # how far ahead it ends.
         both = np.outer(aside, [1.0, -1.0]).ravel().tolist()
         ahead = self._lengths[:-2].tolist()
         self._rays = [
             *zip(both, both, ahead, strict=True),
-            (radius, wide, 0.0),
-            (-radius, -wide, 0.0),
+            (robot.radius, wide, 0.0),
+            (-robot.radius, -wide, 0.0),
         ]
 
     def at(self, origin: Point) -> RangeSensor:
@@ -94,7 +88,7 @@ class CorridorSensor:
             headings: World headings (rad), at least one and at most 1000.
 
         Returns:
-            Free distance (m), one for each, in [0, ``SENSOR_RANGE``].
+            Free distance (m), one for each, in [0, ``range``].
 
         Raises:
             SensorError: If the sensor model fails.
@@ -113,7 +107,7 @@ class CorridorSensor:
         rays[:, -2:][probes < np.inf] = np.inf
         # A free line is exactly as long as the range, not rounded.
         nearest: list[float] = (rays - self._rims).min(axis=1).tolist()
-        return [max(0.0, min(SENSOR_RANGE, one)) for one in nearest]
+        return [max(0.0, min(self.range, one)) for one in nearest]
 
     def look(self, origin: Point, headings: Sequence[float]) -> Floats:
         """Return the distance (m) from ``origin`` to what stands there along each heading.
@@ -123,12 +117,12 @@ class CorridorSensor:
             headings: World headings (rad), at least one and at most 1000.
 
         Returns:
-            Shape (K,), each in [0, reach]; the reach is ``SENSOR_RANGE`` from the rim of a line.
+            Shape (K,), each in [0, reach]; the reach is ``range`` from the rim of a line.
 
         Raises:
             SensorError: If the sensor model fails.
         """
-        reach = SENSOR_RANGE + self.radius
+        reach = self.range + self.radius
         (x, y), z = origin, self._height
         ends = [(x + reach * math.cos(one), y + reach * math.sin(one), z) for one in headings]
         lengths = self._told([(x, y, z)] * len(ends), ends, np.full(len(ends), reach))

@@ -42,7 +42,9 @@ class TrainingEpisode:
         if self._engine is None:
             self._engine = Engine()
         self._scenario = scenario = self._tasks.scenario_of(episode)
-        self._world = World(scenario.obstacles, scenario.arena, engine=self._engine)
+        self._world = World(
+            scenario.obstacles, scenario.arena, engine=self._engine, model=scenario.robot.spec
+        )
         self._episode = Episode(self._world, scenario, patience=PATIENCE)
         self._distances = DistanceField(scenario) if self._true_progress else None
         self._left = self._to_goal(self._episode.now)

@@ -7,7 +7,7 @@ import json
 from dataclasses import dataclass
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.oracle import feasible
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.scenario import Drive, Limits, Scenario, random_task, realise
 
 FIRST_SEED = 2**62

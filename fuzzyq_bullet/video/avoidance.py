@@ -9,10 +9,10 @@ import numpy as np
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.video.footprints import Floats, clipped, extent, footprint
+from fuzzyq_bullet.video.footprints import Floats, clipped
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.scenario.models import Box, Cylinder
+    from fuzzyq_bullet.shapes import Shape
     from fuzzyq_bullet.trajectory import Trajectory
 
 _TOUCHING = 0.02
@@ -54,7 +54,7 @@ class Avoidance:
         self._arena = scenario.arena.size if scenario.arena.walls else None
         self._field = Field.of(scenario.obstacles)
         self._centres = np.array([o.position for o in scenario.obstacles]).reshape(-1, 2)
-        self._extents = np.array([extent(o) for o in scenario.obstacles])
+        self._extents = np.array([o.extent() for o in scenario.obstacles])
         self._group: dict[int, int] = {}
         self._members: dict[int, list[int]] = {}
         self.marks: list[Mark] = []
@@ -83,7 +83,7 @@ class Avoidance:
         """Return what the robot goes round after a decision; None while it goes round nothing."""
         return self._avoided.get(decision)
 
-    def members(self, group: int) -> list[Cylinder | Box]:
+    def members(self, group: int) -> list[Shape]:
         """Return the obstacles of a group; none for a wall."""
         return [self._obstacles[k] for k in self._members.get(group, [])]
 
@@ -135,5 +135,5 @@ class Avoidance:
     def _grown(self, index: int) -> Floats:
         """Return an obstacle's outline (m), a little larger."""
         centre, size = self._centres[index], self._extents[index]
-        outline = footprint(self._obstacles[index])
+        outline = self._obstacles[index].outline()
         return np.asarray(centre + (outline - centre) * (1.0 + _TOUCHING / 2 / size))

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.scenario.models import Cylinder
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
@@ -84,9 +82,8 @@ def struck(trajectory: Trajectory) -> str:
     if hit.obstacle < 0:
         return "a wall"
     obstacle = trajectory.scenario.obstacles[hit.obstacle]
-    kind = "cylinder" if isinstance(obstacle, Cylinder) else "box"
     x, y = (round(v, 1) + 0.0 for v in obstacle.position)
-    return f"the {kind} at ({x:.1f}, {y:.1f})".replace("-", "−")
+    return f"the {obstacle.shape} at ({x:.1f}, {y:.1f})".replace("-", "−")
 
 
 def _turn(trajectory: Trajectory, index: int) -> float:
@@ -119,14 +116,14 @@ def _goes_on(trajectory: Trajectory, index: int) -> str:
 
 
 def _breaks_out(trajectory: Trajectory, index: int) -> str:
-    decisions = trajectory.decisions
+    decisions, unit = trajectory.decisions, trajectory.scenario.robot.radius
     ahead = float(decisions.lengths[index, 1])
     lean = off_goal_line(decisions, index)
     way = lean if math.isfinite(lean) else _turn(trajectory, index)
     side = "straight ahead" if abs(way) < STRAIGHT else "to the " + _side(way)
-    if not math.isfinite(ahead) or ahead < STEP_UNIT:
+    if not math.isfinite(ahead) or ahead < unit:
         because = "Blocked ahead"
-    elif ahead < float(decisions.breakout_at[index]) * STEP_UNIT:
+    elif ahead < float(decisions.breakout_at[index]) * unit:
         because = f"Blocked {ahead:.1f} m ahead"
     else:
         because = "Comes no nearer"

@@ -8,8 +8,6 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.scenario.models import Box, Cylinder
-
 Floats: TypeAlias = NDArray[np.float64]
 
 _HALF_DISC = np.linspace(-math.pi / 2, math.pi / 2, 13)
@@ -18,27 +16,6 @@ _HALF_DISC = np.linspace(-math.pi / 2, math.pi / 2, 13)
 def corners_for(radius: float) -> int:
     """Return how many corners a circle of a radius in pixels needs to look round."""
     return min(max(math.ceil(math.pi * math.sqrt(max(radius, 0.0))), 12), 900)
-
-
-def footprint(obstacle: Cylinder | Box, corners: int = 24) -> Floats:
-    """Return an obstacle's outline (m), shape (N, 2), anticlockwise; cylinders get ``corners``."""
-    x, y = obstacle.position
-    if isinstance(obstacle, Cylinder):
-        angle = np.arange(corners) * (math.tau / corners)
-        return np.stack(
-            [x + obstacle.radius * np.cos(angle), y + obstacle.radius * np.sin(angle)], axis=1
-        )
-    half_x, half_y = obstacle.size[0] / 2, obstacle.size[1] / 2
-    cos, sin = math.cos(obstacle.yaw), math.sin(obstacle.yaw)
-    square = np.array([(-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y)])
-    return np.asarray(square @ np.array([(cos, sin), (-sin, cos)]) + (x, y))
-
-
-def extent(obstacle: Cylinder | Box) -> float:
-    """Return the radius (m) of a circle about an obstacle's centre that holds all of it."""
-    if isinstance(obstacle, Cylinder):
-        return obstacle.radius
-    return math.hypot(*obstacle.size) / 2
 
 
 def corridor(origin: tuple[float, float], heading: float, length: float, radius: float) -> Floats:

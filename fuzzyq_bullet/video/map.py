@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
-from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for, extent, footprint
+from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for
 from fuzzyq_bullet.video.marks import began, cross, diamond, grid_step, left_off
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.style import MAP
-from fuzzyq_bullet.video.timeline import ROBOT_RADIUS, Sensed, Steady
+from fuzzyq_bullet.video.timeline import Sensed, Steady
 from fuzzyq_bullet.video.viewpoint import extent_of
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ class Map:
         x0, y0, x1, y1 = extent_of(trajectory)
         width, height = MAP.size
         self._scale = min((width - 2 * _PADDING) / (x1 - x0), (height - 2 * _PADDING) / (y1 - y0))
+        self._radius = trajectory.scenario.robot.radius
         self._middle = ((x0 + x1) / 2, (y0 + y1) / 2)
         self._area = (x0, y0, x1, y1)
         positions = trajectory.ticks.position
@@ -65,7 +66,7 @@ class Map:
         self._sensed = sensed
         grown = paint.joined([self._trail.follow(moment.tick), self._decorate(moment.decision)])
         centre = self.spot([moment.position])[0]
-        radius = max(_LEAST_ROBOT, ROBOT_RADIUS * self._scale)
+        radius = max(_LEAST_ROBOT, self._radius * self._scale)
         strokes = [] if sensed is None else [self._line(sensed, *line) for line in sensed.lines]
         parts = [
             paint.box_around(
@@ -121,7 +122,7 @@ class Map:
         seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
         wall = self._avoidance.wall(group)
         parts = [
-            self.spot(clipped(footprint(one, corners_for(extent(one) * self._scale)), seen))
+            self.spot(clipped(one.outline(corners_for(one.extent() * self._scale)), seen))
             for one in self._avoidance.members(group)
         ]
 
@@ -153,7 +154,7 @@ class Map:
         obstacle = trajectory.scenario.obstacles[hit.obstacle]
         x0, y0, x1, y1 = self._area
         seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
-        outline = footprint(obstacle, corners_for(extent(obstacle) * self._scale))
+        outline = obstacle.outline(corners_for(obstacle.extent() * self._scale))
         return self.spot(clipped(outline, seen))
 
     def _background(self, trajectory: Trajectory) -> Image.Image:
@@ -183,9 +184,9 @@ class Map:
         def obstacles(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
             for obstacle in scenario.obstacles:
                 x, y = obstacle.position
-                r = extent(obstacle)
+                r = obstacle.extent()
                 if x + r > x0 and x - r < x1 and y + r > y0 and y - r < y1:
-                    outline = footprint(obstacle, corners_for(r * self._scale))
+                    outline = obstacle.outline(corners_for(r * self._scale))
                     pen.polygon(at(self.spot(clipped(outline, seen))), fill=255)
 
         def walls(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
@@ -193,7 +194,7 @@ class Map:
 
         def start(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
             centre = self.spot([scenario.start.position])[0]
-            radius = max(5.0, ROBOT_RADIUS * self._scale)
+            radius = max(5.0, scenario.robot.radius * self._scale)
             pen.ellipse(at.disc(centre, radius), outline=255, width=2 * at.factor)
 
         goal_at = self.spot([scenario.goal.position])[0]

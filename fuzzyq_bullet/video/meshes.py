@@ -10,12 +10,13 @@ import numpy as np
 from fuzzyq_bullet.physics.camera import Lens, Mesh
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import style
-from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for, extent, footprint
+from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from fuzzyq_bullet.scenario.models import Box, Cylinder, Scenario
+    from fuzzyq_bullet.scenario.models import Scenario
+    from fuzzyq_bullet.shapes import Shape
 
 _CHUNK = 400
 """Obstacles of one mesh: PyBullet holds at most 131072 corners a shape."""
@@ -47,11 +48,11 @@ def obstacles_seen(scenario: Scenario, lens: Lens, seen: Floats) -> list[Floats]
     outlines = []
     low, high = seen.min(axis=0), seen.max(axis=0)
     for obstacle in scenario.obstacles:
-        reach = extent(obstacle)
+        reach = obstacle.extent()
         x, y = obstacle.position
         if x + reach < low[0] or x - reach > high[0] or y + reach < low[1] or y - reach > high[1]:
             continue
-        outline = clipped(footprint(obstacle, _corners(obstacle, lens)), seen)
+        outline = clipped(obstacle.outline(_corners(obstacle, lens)), seen)
         if len(outline) >= 3:
             outlines.append(outline)
     return outlines
@@ -112,10 +113,10 @@ def flag(position: tuple[float, float], lens: Lens, scale: float) -> Mesh:
     return Mesh(np.array(vertices), normals, np.array(triangles), style.GOAL)
 
 
-def _corners(obstacle: Cylinder | Box, lens: Lens) -> int:
+def _corners(obstacle: Shape, lens: Lens) -> int:
     """Return how many corners make a cylinder look round at its size in the picture."""
     distance = max(math.dist(lens.eye[:2], obstacle.position), lens.eye[2])
-    return 2 * corners_for(extent(obstacle) * lens.pixels_per_radian() / distance)
+    return 2 * corners_for(obstacle.extent() * lens.pixels_per_radian() / distance)
 
 
 def _prisms(outlines: Iterable[Floats], bottom: float, top: float, colour: style.Colour) -> Mesh:

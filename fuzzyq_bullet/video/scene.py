@@ -15,7 +15,7 @@ from fuzzyq_bullet.video import meshes, paint, style
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.style import SCENE
-from fuzzyq_bullet.video.timeline import ROBOT_RADIUS, Sensed, Steady
+from fuzzyq_bullet.video.timeline import Sensed, Steady
 from fuzzyq_bullet.video.viewpoint import extent_of, lens_for, way
 
 if TYPE_CHECKING:
@@ -52,7 +52,9 @@ class Scene:
         self._stains: list[tuple[style.Colour, paint.Layer]] = []
         self._changed: paint.Box | None = (0, 0, *SCENE.size)
         with ExitStack() as stack:
-            self._robot = stack.enter_context(RobotCamera(self.lens, DETAIL))
+            self._robot = stack.enter_context(
+                RobotCamera(self.lens, trajectory.scenario.robot.spec, DETAIL)
+            )
             self._open = stack.pop_all()
 
     def close(self) -> None:
@@ -223,7 +225,7 @@ def _decorated(
         pen.line(around, 255, 2 * scaled.factor, joint="curve")
 
     def start(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
-        around = scaled(ring(scenario.start.position, ROBOT_RADIUS))
+        around = scaled(ring(scenario.start.position, scenario.robot.radius))
         pen.line(around, 200, round(1.5 * scaled.factor), joint="curve")
 
     for draw, tint in (

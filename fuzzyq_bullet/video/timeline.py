@@ -14,10 +14,6 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
 
 NO_DECISION = -1
-ROBOT_RADIUS = 0.2
-"""Radius of the robot's disc (m): that of ``assets/robot.urdf``."""
-DEFAULT_RANGE = 1.0
-"""Range of the detection lines (m) where a record does not tell: 5·S_p."""
 
 _LEAST_SHIFT = 0.4
 """A smaller shift (pixels) is not seen."""
@@ -139,7 +135,7 @@ def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
     headings, lengths = decisions.lines[decision].tolist(), decisions.lengths[decision].tolist()
     known = all(map(math.isfinite, (*headings, *lengths)))
     target_x, target_y = decisions.target[decision].tolist()
-    arena = trajectory.scenario.arena
+    arena, radius = trajectory.scenario.arena, trajectory.scenario.robot.radius
     aimed = math.isfinite(target_x + target_y)
     inside = 0.0 <= target_x <= arena.size[0] and 0.0 <= target_y <= arena.size[1]
     aimed = aimed and (inside or not arena.walls)
@@ -147,8 +143,8 @@ def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
     return Sensed(
         origin=(x, y),
         lines=lines,
-        corridors=tuple(corridor((x, y), *line, ROBOT_RADIUS) for line in lines),
-        radius=ROBOT_RADIUS,
+        corridors=tuple(corridor((x, y), *line, radius) for line in lines),
+        radius=radius,
         heading=float(decisions.heading[decision]),
         target=(target_x, target_y) if aimed else None,
     )
@@ -157,8 +153,9 @@ def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
 def sensor_range(trajectory: Trajectory) -> float:
     """Return the longest detection line (m) of a run: what they measure where nothing is near."""
     lengths = trajectory.decisions.lengths
+    longest = trajectory.scenario.robot.spec.sensor_range
     known = lengths[np.isfinite(lengths)]
-    return float(known.max()) if known.size and known.max() > 0.0 else DEFAULT_RANGE
+    return float(known.max()) if known.size and known.max() > 0.0 else longest
 
 
 def _between(

@@ -15,8 +15,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle
-from fuzzyq_bullet.video.footprints import arrow, footprint
+from fuzzyq_bullet.scenario.models import Obstacle
+from fuzzyq_bullet.video.footprints import arrow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -117,7 +117,9 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
         axes.add_patch(_shape(obstacle, struck))
     for side in axes.spines.values():
         side.set(linewidth=2.2 if scenario.arena.walls else 0.6, color=_INK)
-    start = Circle(scenario.start.position, ROBOT_RADIUS, fc="white", ec=_INK, lw=1.4, zorder=3)
+    start = Circle(
+        scenario.start.position, scenario.robot.radius, fc="white", ec=_INK, lw=1.4, zorder=3
+    )
     axes.add_patch(start)
     goal = scenario.goal
     axes.add_patch(Circle(goal.position, goal.radius, fc=_GOAL_FACE, ec="none", zorder=3))
@@ -134,7 +136,7 @@ def _shape(obstacle: Obstacle, struck: bool) -> Patch:
         "linewidth": 2.2 if struck else 0.6,
         "zorder": 2.5 if struck else 2.0,
     }
-    return Polygon(footprint(obstacle, _CORNERS), **look)
+    return Polygon(obstacle.outline(_CORNERS), **look)
 
 
 def modes_by_tick(trajectory: Trajectory) -> NDArray[np.int64]:
@@ -184,8 +186,9 @@ def _escapes(axes: Axes, trajectory: Trajectory, shown: _Shown, targets: bool) -
 def _end(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     """Draw the robot where it came to its end, and where it touched something."""
     x, y = trajectory.ticks.position[-1].tolist()
-    nose = arrow((x, y), float(trajectory.ticks.heading[-1]), 1.15 * ROBOT_RADIUS)
-    axes.add_patch(Circle((x, y), ROBOT_RADIUS, fc=_INK, ec="none", zorder=7))
+    radius = trajectory.scenario.robot.radius
+    nose = arrow((x, y), float(trajectory.ticks.heading[-1]), 1.15 * radius)
+    axes.add_patch(Circle((x, y), radius, fc=_INK, ec="none", zorder=7))
     axes.add_patch(Polygon(nose, fc="white", ec="none", zorder=7.5))
     shown[LAST] = _sample(_END_LOOK)
     if trajectory.collision is not None:

@@ -1,6 +1,7 @@
 """Layouts: what a scenario asks to be drawn, made into obstacles.
 
-A layout is one file here, a model of its parameters that can draw, and one line in ``registry``.
+A layout is a model of its parameters that can draw, made known by ``register_layout``; one of your
+own comes from a file that ``--plugin`` names (``examples/extend/layout.py``).
 """
 
 from __future__ import annotations
@@ -8,6 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from fuzzyq_bullet.scenario.layouts.base import LAYOUTS, AnyLayout, Layout, register_layout
+from fuzzyq_bullet.scenario.layouts.scatter import Random  # the default comes first
+
+from fuzzyq_bullet.scenario.layouts.traps import Arc, LongWall, Semicircle, UShape  # isort: skip
+from fuzzyq_bullet.scenario.layouts.rectangles import Rectangles  # isort: skip
+from fuzzyq_bullet.scenario.layouts.maze import Maze  # isort: skip
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.scenario.models import Scenario
@@ -35,4 +43,17 @@ def realise(scenario: Scenario, seed: int | None = None) -> Scenario:
     return scenario.model_copy(update={"obstacles": obstacles, "random": None, "seed": seed})
 
 
-__all__ = ["realise"]
+__all__ = [
+    "LAYOUTS",
+    "AnyLayout",
+    "Arc",
+    "Layout",
+    "LongWall",
+    "Maze",
+    "Random",
+    "Rectangles",
+    "Semicircle",
+    "UShape",
+    "realise",
+    "register_layout",
+]

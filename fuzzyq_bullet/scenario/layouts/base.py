@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias, TypeVar
 
-from fuzzyq_bullet.scenario.shapes import MAX_OBSTACLES, Model, Obstacle
+from fuzzyq_bullet.quantities import MAX_OBSTACLES, Model
+from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.shapes import Obstacle
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,6 +36,33 @@ class Layout(Model):
     def conflicts(self, scenario: Scenario) -> list[Conflict]:
         """Return what can be known to be impossible without drawing."""
         return []
+
+
+LAYOUTS: ModelRegistry[Layout] = ModelRegistry("layout", default="scatter")
+"""All layouts, by the name that a scenario gives in ``random.layout``."""
+AnyLayout: TypeAlias = Annotated[Layout, LAYOUTS]
+_L = TypeVar("_L", bound=type[Layout])
+
+
+def register_layout(layout: _L) -> _L:
+    """Make a layout known to scenario files: a decorator for subclasses of ``Layout``.
+
+    The subclass narrows ``layout`` to its own name, has its parameters as fields, and implements
+    ``draw``; ``scenario.layouts.placing`` tells whether what is drawn may stay::
+
+        @register_layout
+        class Row(Layout):
+            layout: Literal["row"]
+            count: Count
+
+            def draw(self, scenario, rng):
+                return tuple(Cylinder(shape="cylinder", ...) for k in range(self.count))
+
+    Raises:
+        ValueError: If the name is taken.
+    """
+    LAYOUTS.add(layout)
+    return layout
 
 
 def too_many(scenario: Scenario, count: int, key: str = "count") -> list[Conflict]:

@@ -9,9 +9,11 @@ import numpy as np
 from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout
-from fuzzyq_bullet.scenario.layouts.placing import DECIMALS, is_clear, leaves_a_way
-from fuzzyq_bullet.scenario.shapes import MAX_OBSTACLES, MIN_RADIUS, ROBOT_RADIUS, Box, Number
+from fuzzyq_bullet.quantities import DECIMALS, MAX_OBSTACLES, MIN_RADIUS, Number
+from fuzzyq_bullet.robots import FUZZYQ
+from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout, register_layout
+from fuzzyq_bullet.scenario.layouts.placing import is_clear, leaves_a_way
+from fuzzyq_bullet.shapes import Box
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +29,7 @@ _ROUNDING = 2e-4
 """Farthest that a wall moves (m) when it becomes one with others and is rounded again."""
 
 
+@register_layout
 class Maze(Layout):
     """A maze that fills the arena.
 
@@ -36,7 +39,7 @@ class Maze(Layout):
     """
 
     layout: Literal["maze"]
-    corridor: Annotated[Number, Field(ge=2 * ROBOT_RADIUS + _ROOM, le=1000.0)] = Field(
+    corridor: Annotated[Number, Field(ge=2 * FUZZYQ.radius + _ROOM, le=1000.0)] = Field(
         default=0.9, description="Least free width between walls (m)."
     )
     thickness: Annotated[Number, Field(ge=2 * MIN_RADIUS, le=10.0)] = Field(
@@ -50,7 +53,11 @@ class Maze(Layout):
     )
 
     def conflicts(self, scenario: Scenario) -> list[Conflict]:
-        """Return corridors too narrow for so large an arena: too many walls."""
+        """Return corridors too narrow for the robot, or for so large an arena: too many walls."""
+        least = 2 * scenario.robot.radius + _ROOM
+        if self.corridor < least:
+            message = f"must be at least {least:g} for this robot, got {self.corridor:g}"
+            return [(("corridor",), message)]
         columns, rows = self._cells(scenario.arena.size)
         if columns * rows <= MAX_OBSTACLES - len(scenario.obstacles):
             return []

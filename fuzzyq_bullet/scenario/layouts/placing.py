@@ -9,7 +9,8 @@ import numpy as np
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.occupancy import OccupancyGrid
-from fuzzyq_bullet.scenario.shapes import ROBOT_RADIUS, TOUCH, Box, Obstacle
+from fuzzyq_bullet.quantities import TOUCH
+from fuzzyq_bullet.shapes import Obstacle
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.geometry import Floats
     from fuzzyq_bullet.scenario.models import Scenario
 
-DECIMALS = 4
 _STEP = 0.05
 """Distance of the places (m) among which ``leaves_a_way`` looks for one, in a usual arena."""
 _MOST_PLACES = 250_000
@@ -29,8 +29,11 @@ _OUTSIDE = 2.0
 
 def kept_clear(scenario: Scenario, margin: float) -> list[tuple[tuple[float, float], float]]:
     """Return centres and radii (m) of the discs that drawn obstacles keep out of."""
-    goal = max(scenario.goal.radius, ROBOT_RADIUS)
-    discs = ((scenario.start.position, ROBOT_RADIUS), (scenario.goal.position, goal))
+    robot = scenario.robot.radius
+    discs = (
+        (scenario.start.position, robot),
+        (scenario.goal.position, max(scenario.goal.radius, robot)),
+    )
     return [(centre, radius + margin + 2 * TOUCH) for centre, radius in discs]
 
 
@@ -40,22 +43,26 @@ def is_clear(scenario: Scenario, obstacles: Sequence[Obstacle], margin: float) -
     return all(field.nearest(centre)[1] > radius for centre, radius in kept_clear(scenario, margin))
 
 
-def corners(box: Box) -> Floats:
-    """Return the corners of a box, shape (4, 2), anticlockwise (m)."""
-    cos, sin = math.cos(box.yaw), math.sin(box.yaw)
-    half = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * np.array(box.size) / 2
-    placed: Floats = np.array(box.position) + half @ np.array([[cos, sin], [-sin, cos]])
-    return placed
-
-
 def is_inside(obstacle: Obstacle, size: tuple[float, float]) -> bool:
     """Tell whether an obstacle lies wholly within an arena of that size (m)."""
-    if isinstance(obstacle, Box):
-        points, reach = corners(obstacle), 0.0
-    else:
-        points, reach = np.array([obstacle.position]), obstacle.radius
+    points, reach = obstacle.corners()
     low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
     return bool(np.all(low >= -TOUCH) and np.all(high <= np.array(size) + TOUCH))
+
+
+def separated(first: Floats, second: Floats) -> bool:
+    """Tell whether two convex polygons, shape (K, 2), share no more than an edge (exactly)."""
+    return _lies_beyond(first, second) or _lies_beyond(second, first)
+
+
+def _lies_beyond(first: Floats, second: Floats) -> bool:
+    """Tell whether all of the second lies beyond some side of the first, or beyond its opposite."""
+    for side in np.roll(first, -1, axis=0) - first:
+        across = np.array([-side[1], side[0]])
+        along, other = first @ across, second @ across
+        if other.min() >= along.max() or other.max() <= along.min():
+            return True
+    return False
 
 
 def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
@@ -74,10 +81,18 @@ def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
     field = Field.of([*scenario.obstacles, *obstacles], scenario.arena)
     clearance = field.clearance(places.reshape(-1, 2)).reshape(grid.free.shape)
     # Half a step from either of two neighbours, that much clearance is left over.
-    grid.free[:] = clearance >= ROBOT_RADIUS + step / 2
+    grid.free[:] = clearance >= scenario.robot.radius + step / 2
     regions, _ = label(grid.free)
     ends = [
-        _regions_at(np.array(place.position), field, places, clearance, regions, 3 * step)
+        _regions_at(
+            np.array(place.position),
+            scenario.robot.radius,
+            field,
+            places,
+            clearance,
+            regions,
+            3 * step,
+        )
         for place in (scenario.start, scenario.goal)
     ]
     return bool(ends[0] & ends[1])
@@ -85,6 +100,7 @@ def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
 
 def _regions_at(
     point: Floats,
+    radius: float,
     field: Field,
     places: Floats,
     clearance: Floats,
@@ -95,4 +111,4 @@ def _regions_at(
     apart = np.linalg.norm(places - point, axis=-1)
     # Along a line of length L between clearances a and b, it is nowhere less than (a + b − L) / 2.
     least = (clearance + field.clearance(point[None])[0] - apart) / 2
-    return set(np.unique(regions[(apart <= reach) & (regions > 0) & (least >= ROBOT_RADIUS)]))
+    return set(np.unique(regions[(apart <= reach) & (regions > 0) & (least >= radius)]))

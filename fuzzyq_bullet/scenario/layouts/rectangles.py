@@ -10,21 +10,12 @@ from pydantic import Field
 
 from fuzzyq_bullet import geometry
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout, too_many
-from fuzzyq_bullet.scenario.layouts.placing import DECIMALS, corners, is_clear, is_inside
-from fuzzyq_bullet.scenario.shapes import (
-    MAX_OBSTACLES,
-    MIN_RADIUS,
-    Box,
-    Count,
-    Cylinder,
-    Flag,
-    Number,
-    Obstacle,
-)
+from fuzzyq_bullet.quantities import DECIMALS, MAX_OBSTACLES, MIN_RADIUS, Count, Flag, Number
+from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout, register_layout, too_many
+from fuzzyq_bullet.scenario.layouts.placing import is_clear, is_inside, separated
+from fuzzyq_bullet.shapes import Box, Obstacle
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.geometry import Floats
     from fuzzyq_bullet.scenario.models import Scenario
 
 _IDLE = 2000
@@ -33,6 +24,7 @@ _IDLE = 2000
 _Side = Annotated[Number, Field(ge=2 * MIN_RADIUS, le=1000.0)]
 
 
+@register_layout
 class Rectangles(Layout):
     """Boxes at random places, as many as asked for, wholly within the arena."""
 
@@ -108,20 +100,11 @@ class Rectangles(Layout):
 
 def overlap(box: Box, other: Obstacle) -> bool:
     """Tell whether a box and an obstacle share more than an edge (separating axes, exactly)."""
-    if isinstance(other, Cylinder):
+    points, radius = other.corners()
+    if len(points) == 1:
         gap = geometry.Field.of([box]).nearest(other.position)[1]
-        return gap < other.radius
+        return gap < radius
     apart = math.dist(box.position, other.position)
-    if apart >= (math.hypot(*box.size) + math.hypot(*other.size)) / 2:
+    if apart >= box.extent() + other.extent():
         return False
-    first, second = corners(box), corners(other)
-    return not (_separates(first, second) or _separates(second, first))
-
-
-def _separates(first: Floats, second: Floats) -> bool:
-    """Tell whether some side of the first parallelogram has all of the second beyond it."""
-    for side in (first[1] - first[0], first[2] - first[1]):
-        along, other = first @ side, second @ side
-        if other.min() >= along.max() or other.max() <= along.min():
-            return True
-    return False
+    return not separated(box.outline(), other.outline())

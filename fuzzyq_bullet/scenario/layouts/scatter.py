@@ -18,17 +18,17 @@ from pydantic import Field as Given
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout, too_many
-from fuzzyq_bullet.scenario.shapes import (
+from fuzzyq_bullet.quantities import (
+    DECIMALS,
     MAX_OBSTACLES,
     MIN_RADIUS,
-    ROBOT_RADIUS,
     TOUCH,
     Count,
-    Cylinder,
     Flag,
     Number,
 )
+from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout, register_layout, too_many
+from fuzzyq_bullet.shapes import Cylinder
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.scenario.models import Scenario
@@ -37,13 +37,13 @@ Floats: TypeAlias = NDArray[np.float64]
 
 _BATCH = 1024
 """Places drawn at once. Fixed, so that a larger count begins with the places of a smaller one."""
-_DECIMALS = 4
 _MAX_IDLE = 50
 """Batches in a row without a single place found after which there is taken to be none."""
 _DENSEST = math.pi / math.sqrt(12.0)
 """Share of the plane that equal discs can cover at most without overlap."""
 
 
+@register_layout
 class Random(Layout):
     """Obstacles at random places: Algorithm 2, with its intent restored."""
 
@@ -117,11 +117,12 @@ def _draw(scenario: Scenario, wanted: Random, rng: np.random.Generator) -> Float
     size = np.array(scenario.arena.size)
     r = wanted.radius
     low, high = np.minimum(r, size / 2), np.maximum(size - r, size / 2)
-    drawn = rng.uniform(low, high, (_BATCH, 2)).round(_DECIMALS)
+    drawn = rng.uniform(low, high, (_BATCH, 2)).round(DECIMALS)
     fits = np.all((drawn >= r - TOUCH) & (drawn <= size - r + TOUCH), axis=1)
+    robot = scenario.robot.radius
     kept_clear = (
-        (scenario.start.position, ROBOT_RADIUS),
-        (scenario.goal.position, max(scenario.goal.radius, ROBOT_RADIUS)),
+        (scenario.start.position, robot),
+        (scenario.goal.position, max(scenario.goal.radius, robot)),
     )
     for centre, radius in kept_clear:
         apart = np.linalg.norm(drawn - centre, axis=1)

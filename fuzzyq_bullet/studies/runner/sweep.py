@@ -14,8 +14,8 @@ from typing import Any, TypeAlias
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.errors import PlannerError
 from fuzzyq_bullet.files import write_text
+from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.metrics import result_of
-from fuzzyq_bullet.oracle import feasible
 from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.studies.runner.jobs import Job
 from fuzzyq_bullet.studies.runner.rows import Row, as_csv

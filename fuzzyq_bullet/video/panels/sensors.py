@@ -10,26 +10,11 @@ from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import is_clear
-from fuzzyq_bullet.video.footprints import (
-    Floats,
-    arrow,
-    clipped,
-    corners_for,
-    corridor,
-    extent,
-    footprint,
-)
+from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for, corridor
 from fuzzyq_bullet.video.meshes import walls_of
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.style import SENSORS
-from fuzzyq_bullet.video.timeline import (
-    NO_DECISION,
-    ROBOT_RADIUS,
-    Moment,
-    Sensed,
-    sensed_at,
-    sensor_range,
-)
+from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Sensed, sensed_at, sensor_range
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -56,14 +41,15 @@ class Sensors:
         self._canvas = canvas
         self._trajectory = trajectory
         self._decisions = trajectory.decisions
+        self._radius = trajectory.scenario.robot.radius
         self._range = sensor_range(trajectory)
-        self._view = self._range + ROBOT_RADIUS + 0.1
+        self._view = self._range + self._radius + 0.1
         self._scale = _DIAMETER * _FACTOR / 2 / self._view
         scenario = trajectory.scenario
         self._obstacles = scenario.obstacles
         self._outlines: dict[int, Floats] = {}
         self._centres = np.array([o.position for o in scenario.obstacles]).reshape(-1, 2)
-        self._extents = np.array([extent(o) for o in scenario.obstacles])
+        self._extents = np.array([o.extent() for o in scenario.obstacles])
         everywhere = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * 1e4
         self._walls = walls_of(scenario, everywhere)
         self._image = paint.card(SENSORS, "1  SENSORS")
@@ -124,10 +110,10 @@ class Sensors:
                 pen.polygon(outline, fill=(*colour, 90))
                 pen.line(outline, colour, 3 * _FACTOR // 2)
             way = np.array((math.cos(sensed.heading), math.sin(sensed.heading)))
-            tip = here + way * (ROBOT_RADIUS + 0.32)
+            tip = here + way * (self._radius + 0.32)
             pen.line(at(np.stack([here, tip])), style.TEXT, 3 * _FACTOR)
             pen.polygon(at(arrow((tip[0], tip[1]), sensed.heading, 0.2)), fill=style.TEXT)
-        centre, radius = side / 2, ROBOT_RADIUS * self._scale
+        centre, radius = side / 2, self._radius * self._scale
         pen.ellipse(
             (centre - radius, centre - radius, centre + radius, centre + radius), style.ROBOT
         )
@@ -138,7 +124,7 @@ class Sensors:
     def _outline(self, index: int) -> Floats:
         if index not in self._outlines:
             corners = corners_for(float(self._extents[index]) * self._scale)
-            self._outlines[index] = footprint(self._obstacles[index], corners)
+            self._outlines[index] = self._obstacles[index].outline(corners)
         return self._outlines[index]
 
     def _write_numbers(self, image: Image.Image, index: int) -> None:

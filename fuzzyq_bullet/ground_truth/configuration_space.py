@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import KDTree
 
 from fuzzyq_bullet.geometry import Field, Floats
+from fuzzyq_bullet.shapes import GRAZE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
-    from fuzzyq_bullet.scenario.models import Obstacle
 
-GRAZE = 1e-9
-"""What is no deeper than this (m) within something grown only touches it."""
 TOUCHES = 2 * GRAZE
 """The same for what was itself found to within ``GRAZE``."""
 _CHUNK = 1_000_000
@@ -27,43 +22,26 @@ _NEAR = 16
 """Discs about each end that a line is held against first: they stop most lines."""
 
 
-@dataclass(frozen=True, eq=False)
-class GrownWorld:
+class ConfigurationSpace:
     """Obstacles grown by the radius of the disc whose centre moves among them.
 
-    Attributes:
-        radius: Radius of the moving disc (m).
+    Args:
         field: The obstacles and walls as they are.
-        centres: Shape (N, 2) (m): of all grown discs, those of cylinders and of boxes' corners.
+        radius: Radius of the moving disc (m).
+
+    Attributes:
+        field: As given.
+        radius: As given.
+        centres: Shape (N, 2) (m): of all grown discs, those of round obstacles and of corners.
         radii: Shape (N,): radii of the grown discs (m).
-        boxes: Shape (6, M): x, y, half sizes, cos and sin of the yaw of each bare box.
         near: Shape (N, K): for each disc, the discs with the nearest centres, nearest first.
     """
 
-    radius: float
-    field: Field
-    centres: Floats
-    radii: Floats
-    boxes: Floats
-    near: NDArray[np.intp]
-
-    @classmethod
-    def of(
-        cls, obstacles: Sequence[Obstacle], walls: tuple[float, float] | None, radius: float
-    ) -> GrownWorld:
-        """Build it from obstacles and the size (m) that walls enclose, None without walls."""
-        bare = Field.of(obstacles)
-        field = Field(bare.cylinders, bare.boxes, walls, bare.cylinder_index, bare.box_index)
-        x, y, sx, sy, yaw = field.boxes.T
-        boxes = np.array([x, y, sx / 2, sy / 2, np.cos(yaw), np.sin(yaw)])
-        discs = [field.cylinders + np.array([0.0, 0.0, radius])]
-        _, _, hx, hy, cos, sin = boxes
-        for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-            cx, cy = x + a * hx * cos - b * hy * sin, y + a * hx * sin + b * hy * cos
-            discs.append(np.column_stack([cx, cy, np.full(len(x), radius)]))
-        all_discs = np.unique(np.concatenate(discs), axis=0)
-        centres, radii = all_discs[:, :2].copy(), all_discs[:, 2].copy()
-        return cls(radius, field, centres, radii, boxes, _nearest(centres))
+    def __init__(self, field: Field, radius: float) -> None:
+        self.field, self.radius = field, radius
+        discs = np.unique(field.discs + np.array([0.0, 0.0, radius]), axis=0)
+        self.centres, self.radii = discs[:, :2].copy(), discs[:, 2].copy()
+        self.near = _nearest(self.centres)
 
     def is_free(self, points: Floats) -> NDArray[np.bool_]:
         """Tell for each point, shape (K, 2), whether the disc fits there; shape (K,)."""
@@ -79,8 +57,8 @@ class GrownWorld:
     ) -> NDArray[np.bool_]:
         """Tell for each straight line whether the disc can move along it; shape (S,).
 
-        Both ends must be free. Then a line that enters a rounded box enters one of its corners'
-        discs or crosses the bare box, and one between the walls stays there.
+        Both ends must be free. Then a line that enters a grown obstacle enters the disc of one of
+        its corners or crosses the bare obstacle, and one between the walls stays there.
 
         Args:
             begin: Shape (S, 2) (m).
@@ -96,32 +74,17 @@ class GrownWorld:
                 disc = self.near[around[alive], k]
                 gap = _to_lines(begin[alive], end[alive], self.centres[disc])
                 alive = alive[gap >= self.radii[disc] - TOUCHES]
-        rows = max(1, _CHUNK // max(1, len(self.radii) + self.boxes.shape[1]))
+        rows = max(1, _CHUNK // max(1, 2 * len(self.radii)))
         open_ = np.zeros(len(begin), dtype=bool)
         for k in range(0, len(alive), rows):
             part = alive[k : k + rows]
             a, b = begin[part, None], end[part, None]
             clear = np.all(_to_lines(a, b, self.centres) >= self.radii - TOUCHES, axis=1)
             part = part[clear]
-            open_[part] = ~self._cross_boxes(begin[part], end[part])
+            open_[part] = True
+            for group in self.field.groups:
+                open_[part] &= ~group.are_crossed(begin[part], end[part])
         return open_
-
-    def _cross_boxes(self, begin: Floats, end: Floats) -> NDArray[np.bool_]:
-        """Tell for each line, shape (S,), whether it crosses the inside of a bare box."""
-        x, y, hx, hy, cos, sin = self.boxes
-        dx, dy = begin[:, :1] - x, begin[:, 1:] - y
-        vx, vy = end[:, :1] - begin[:, :1], end[:, 1:] - begin[:, 1:]
-        enter, leave = np.zeros_like(dx), np.ones_like(dx)
-        for at, speed, half in (
-            (dx * cos + dy * sin, vx * cos + vy * sin, hx),
-            (dy * cos - dx * sin, vy * cos - vx * sin, hy),
-        ):
-            still = np.where(np.abs(speed) < 1e-30, 1e-30, speed)
-            one, other = (-half - at) / still, (half - at) / still
-            np.maximum(enter, np.minimum(one, other), out=enter)
-            np.minimum(leave, np.maximum(one, other), out=leave)
-        crossed: NDArray[np.bool_] = np.any(enter < leave, axis=1)
-        return crossed
 
 
 def _to_lines(begin: Floats, end: Floats, points: Floats) -> Floats:

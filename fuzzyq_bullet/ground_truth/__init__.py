@@ -18,30 +18,30 @@ import math
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.oracle.route import Route
-from fuzzyq_bullet.oracle.search import is_connected, shortest_route
-from fuzzyq_bullet.oracle.world import GRAZE, GrownWorld
-from fuzzyq_bullet.scenario.models import ROBOT_RADIUS, Obstacle, Point, Scenario
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
+from fuzzyq_bullet.ground_truth.search import is_connected, shortest_route
+from fuzzyq_bullet.ground_truth.tangent_graph import Route
+from fuzzyq_bullet.scenario.models import Arena, Obstacle, Point, Scenario
+from fuzzyq_bullet.shapes import GRAZE
 
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    Key: TypeAlias = tuple[
-        tuple[Obstacle, ...], tuple[float, float] | None, Point, Point, float, float
-    ]
+    Key: TypeAlias = tuple[tuple[Obstacle, ...], Arena, Point, Point, float, float]
 
 _REMEMBERED = 128
 """Worlds whose answers are kept: a sweep asks for each world once for every planner."""
 
 
-def shortest_path(scenario: Scenario, radius: float = ROBOT_RADIUS) -> Route | None:
+def shortest_path(scenario: Scenario, radius: float | None = None) -> Route | None:
     """Return the shortest way of a disc from the start to the goal disc; None if there is none.
 
     Answers are remembered by geometry alone: planner, seed, drive and names make no difference.
 
     Args:
         scenario: A realised scenario (``scenario.realise``): every obstacle listed.
-        radius: Radius of the disc (m), more than 0.
+        radius: Radius of the disc (m), more than 0; by default the robot's.
 
     Returns:
         The route of the disc's centre. It has length 0 when the start is within the goal already.
@@ -53,14 +53,14 @@ def shortest_path(scenario: Scenario, radius: float = ROBOT_RADIUS) -> Route | N
     return _route(*_key(scenario, radius))
 
 
-def feasible(scenario: Scenario, radius: float = ROBOT_RADIUS) -> bool:
+def feasible(scenario: Scenario, radius: float | None = None) -> bool:
     """Return whether there is any way of a disc from the start to the goal disc.
 
     Cheaper than ``shortest_path`` where there is one: it stops at the first way it finds.
 
     Args:
         scenario: A realised scenario.
-        radius: Radius of the disc (m), more than 0.
+        radius: Radius of the disc (m), more than 0; by default the robot's.
 
     Raises:
         ValueError: As ``shortest_path``.
@@ -85,14 +85,15 @@ def spl(success: bool, shortest: float, driven: float) -> float:
     return shortest / longest if longest > 0.0 else 1.0
 
 
-def _key(scenario: Scenario, radius: float) -> Key:
+def _key(scenario: Scenario, radius: float | None) -> Key:
+    radius = scenario.robot.radius if radius is None else radius
     if scenario.random is not None:
         raise ValueError(f"{scenario.name}: obstacles are still to be drawn; use realise() first")
     if not (math.isfinite(radius) and radius > 2 * GRAZE):
         raise ValueError(f"the radius must be positive and finite, got {radius}")
     return (
         scenario.obstacles,
-        scenario.arena.size if scenario.arena.walls else None,
+        scenario.arena,
         scenario.start.position,
         scenario.goal.position,
         scenario.goal.radius,
@@ -100,28 +101,32 @@ def _key(scenario: Scenario, radius: float) -> Key:
     )
 
 
+def _space(obstacles: tuple[Obstacle, ...], arena: Arena, radius: float) -> ConfigurationSpace:
+    return ConfigurationSpace(Field.of(obstacles, arena), radius)
+
+
 @lru_cache(maxsize=_REMEMBERED)
 def _route(
     obstacles: tuple[Obstacle, ...],
-    walls: tuple[float, float] | None,
+    arena: Arena,
     start: Point,
     goal: Point,
     goal_radius: float,
     radius: float,
 ) -> Route | None:
-    return shortest_route(GrownWorld.of(obstacles, walls, radius), start, goal, goal_radius)
+    return shortest_route(_space(obstacles, arena, radius), start, goal, goal_radius)
 
 
 @lru_cache(maxsize=_REMEMBERED)
 def _is_feasible(
     obstacles: tuple[Obstacle, ...],
-    walls: tuple[float, float] | None,
+    arena: Arena,
     start: Point,
     goal: Point,
     goal_radius: float,
     radius: float,
 ) -> bool:
-    return is_connected(GrownWorld.of(obstacles, walls, radius), start, goal, goal_radius)
+    return is_connected(_space(obstacles, arena, radius), start, goal, goal_radius)
 
 
 __all__ = ["GRAZE", "Route", "feasible", "shortest_path", "spl"]

@@ -17,8 +17,11 @@ from scipy.sparse.csgraph import dijkstra
 
 import fuzzyq_bullet
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.oracle import GRAZE, Route, feasible, shortest_path, spl
+from fuzzyq_bullet.ground_truth import GRAZE, Route, feasible, shortest_path, spl
+from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
+from fuzzyq_bullet.ground_truth.search import shortest_route
 from fuzzyq_bullet.scenario import Scenario, realise
+from fuzzyq_bullet.shapes import Box, Boxes, ConvexPolygons
 
 EXACT = 1e-9
 """Closed forms and the oracle differ by rounding and by the root of what may graze."""
@@ -83,6 +86,23 @@ def test_one_cylinder_is_passed_by_a_line_an_arc_and_a_line():
     expected = 2 * math.sqrt(aside**2 - around**2)
     expected += around * (math.pi - 2 * math.acos(around / aside)) - 0.2
     assert length(task(pillar(5, 5, 0.8))) == pytest.approx(expected, abs=EXACT)
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.2, 0.35])
+def test_boxes_given_by_their_corners_alone_leave_the_same_way(radius):
+    rng = np.random.default_rng(4)
+    rows = np.column_stack([rng.uniform(2, 8, (14, 2)), rng.uniform(0.3, 1.5, (14, 2))])
+    boxes = [
+        Box(shape="box", position=(x, y), size=(a, b), yaw=yaw)
+        for yaw, (x, y, a, b) in enumerate(rows.tolist())
+    ]
+    spaces = [
+        ConfigurationSpace(Field(arena=(10.0, 10.0), groups=[group]), radius)
+        for group in (Boxes.of(boxes), ConvexPolygons([one.outline() for one in boxes]))
+    ]
+    one, other = (shortest_route(space, (0.5, 0.5), (9.5, 9.5), 0.2) for space in spaces)
+    assert one.length > math.dist((0.5, 0.5), (9.5, 9.5)) - 0.2 + EXACT  # not straight
+    assert other.length == pytest.approx(one.length, abs=EXACT)
 
 
 def test_the_arc_is_that_of_the_disc_that_moves():
@@ -422,10 +442,10 @@ def test_spl_is_the_share_of_the_driven_path_that_was_needed():
 def test_nothing_that_drives_or_plans_can_reach_it():
     code = (
         "import sys, fuzzyq_bullet.episode, fuzzyq_bullet.planning, fuzzyq_bullet.drives\n"
-        "sys.exit(any(name.startswith('fuzzyq_bullet.oracle') for name in sys.modules))"
+        "sys.exit(any(name.startswith('fuzzyq_bullet.ground_truth') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
     root = Path(fuzzyq_bullet.__file__).parent
     for room in ("planning", "learning", "drives", "physics", "scenario", "episode.py"):
         files = [root / room] if room.endswith(".py") else (root / room).rglob("*.py")
-        assert not [f for f in files if "oracle" in f.read_text(encoding="utf-8")]
+        assert not [f for f in files if "ground_truth" in f.read_text(encoding="utf-8")]

@@ -13,10 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.oracle.arcs import Arcs, free_arcs
-from fuzzyq_bullet.oracle.graph import TangentGraph
-from fuzzyq_bullet.oracle.route import Route
-from fuzzyq_bullet.oracle.tangents import between_discs, from_point, on_edge
+from fuzzyq_bullet.ground_truth.free_arcs import FreeArcs, free_arcs
+from fuzzyq_bullet.ground_truth.tangent_graph import (
+    Route,
+    TangentGraph,
+    between_discs,
+    from_point,
+    on_edge,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -25,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fuzzyq_bullet.geometry import Floats
-    from fuzzyq_bullet.oracle.world import GrownWorld
+    from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
     from fuzzyq_bullet.scenario.models import Point
 
     Ints: TypeAlias = NDArray[np.intp]
@@ -37,7 +41,7 @@ _START, _GOAL = 0, 1
 
 
 def shortest_route(
-    world: GrownWorld, start: Point, goal: Point, goal_radius: float
+    world: ConfigurationSpace, start: Point, goal: Point, goal_radius: float
 ) -> Route | None:
     """Return the shortest way from ``start`` to any point within ``goal_radius`` of ``goal``."""
     search = _Search(world, start, goal, goal_radius)
@@ -52,7 +56,7 @@ def shortest_route(
     return min(near, full, key=lambda route: route.length)
 
 
-def is_connected(world: GrownWorld, start: Point, goal: Point, goal_radius: float) -> bool:
+def is_connected(world: ConfigurationSpace, start: Point, goal: Point, goal_radius: float) -> bool:
     """Tell whether there is any way. Near discs alone often tell."""
     search = _Search(world, start, goal, goal_radius)
     if not search.begins_free():
@@ -65,7 +69,9 @@ def is_connected(world: GrownWorld, start: Point, goal: Point, goal_radius: floa
 class _Search:
     """One question to one world."""
 
-    def __init__(self, world: GrownWorld, start: Point, goal: Point, goal_radius: float) -> None:
+    def __init__(
+        self, world: ConfigurationSpace, start: Point, goal: Point, goal_radius: float
+    ) -> None:
         self.world = world
         self.start = np.array(start, dtype=np.float64)
         self.goal = np.array(goal, dtype=np.float64)
@@ -75,8 +81,8 @@ class _Search:
         self._to_goal = _beyond(world.centres, self.goal, world.radii + goal_radius)
 
     @cached_property
-    def arcs(self) -> Arcs:
-        return Arcs.of(self.world)
+    def arcs(self) -> FreeArcs:
+        return FreeArcs.of(self.world)
 
     @cached_property
     def rim(self) -> Floats:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.oracle.world import GRAZE
+from fuzzyq_bullet.shapes import GRAZE
 
 _SEAM = 1e-12
 """Covered parts that are no farther apart than this (rad) are one, cut in two by rounding: a gap
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fuzzyq_bullet.geometry import Floats
-    from fuzzyq_bullet.oracle.world import GrownWorld
+    from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
 
 
 @dataclass(frozen=True, eq=False)
-class Arcs:
+class FreeArcs:
     """Free arcs of all grown discs' edges, in the order of the discs and then of the angle.
 
     Attributes:
@@ -38,7 +38,7 @@ class Arcs:
     last: NDArray[np.intp]
 
     @classmethod
-    def of(cls, world: GrownWorld) -> Arcs:
+    def of(cls, world: ConfigurationSpace) -> FreeArcs:
         """Find the free arcs of all discs of a world."""
         disc: list[int] = []
         spans: list[tuple[float, float]] = []
@@ -76,7 +76,9 @@ class Arcs:
         return np.where(inside, found, -1), offset
 
 
-def free_arcs(world: GrownWorld, centre: Floats, radius: float) -> list[tuple[float, float]]:
+def free_arcs(
+    world: ConfigurationSpace, centre: Floats, radius: float
+) -> list[tuple[float, float]]:
     """Return beginning and extent (rad) of the parts of a circle where the disc's centre may be.
 
     Args:
@@ -90,7 +92,7 @@ def free_arcs(world: GrownWorld, centre: Floats, radius: float) -> list[tuple[fl
     """
     covers = [
         _by_discs(world, centre, radius),
-        _by_boxes(world, centre, radius),
+        *(group.covers(centre, radius, world.radius - GRAZE) for group in world.field.groups),
         _by_walls(world, centre, radius),
     ]
     begin, extent = np.concatenate(covers).T
@@ -113,7 +115,7 @@ def _intervals(middle: Floats, half: Floats) -> Floats:
     return np.column_stack([np.remainder(middle - half, math.tau), 2 * half])
 
 
-def _by_discs(world: GrownWorld, centre: Floats, radius: float) -> Floats:
+def _by_discs(world: ConfigurationSpace, centre: Floats, radius: float) -> Floats:
     dx, dy = (world.centres - centre).T
     apart, other = np.hypot(dx, dy), world.radii - GRAZE
     meets = (apart < radius + other) & (apart + other > radius)
@@ -123,7 +125,7 @@ def _by_discs(world: GrownWorld, centre: Floats, radius: float) -> Floats:
     return _intervals(np.arctan2(dy, dx), np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
-def _by_walls(world: GrownWorld, centre: Floats, radius: float) -> Floats:
+def _by_walls(world: ConfigurationSpace, centre: Floats, radius: float) -> Floats:
     if world.field.arena is None:
         return np.zeros((0, 2))
     (x, y), (width, depth) = centre, world.field.arena
@@ -132,46 +134,3 @@ def _by_walls(world: GrownWorld, centre: Floats, radius: float) -> Floats:
     meets = gap < radius
     half = np.arccos(np.clip(gap[meets] / radius, -1.0, 1.0))
     return _intervals(np.arange(4.0)[meets] * (math.pi / 2), half)
-
-
-def _by_boxes(world: GrownWorld, centre: Floats, radius: float) -> Floats:
-    """Cover by the boxes grown along one of their axes; the rest of them are corners' discs."""
-    x, y, hx, hy, cos, sin = world.boxes
-    if not len(x):
-        return np.zeros((0, 2))
-    dx, dy = centre[0] - x, centre[1] - y
-    px, py = dx * cos + dy * sin, dy * cos - dx * sin
-    yaw = np.arctan2(sin, cos)
-    grown = world.radius - GRAZE
-    found = [
-        _by_rectangles(px, py, wide, high, yaw, radius)
-        for wide, high in ((hx + grown, hy), (hx, hy + grown))
-    ]
-    return np.concatenate(found)
-
-
-def _by_rectangles(
-    px: Floats, py: Floats, wide: Floats, high: Floats, yaw: Floats, radius: float
-) -> Floats:
-    """Cover by rectangles of half sizes ``wide`` and ``high``, p being the circle's centre."""
-    away = np.hypot(np.maximum(np.abs(px) - wide, 0.0), np.maximum(np.abs(py) - high, 0.0))
-    near = away < radius
-    px, py, wide, high, yaw = px[near], py[near], wide[near], high[near], yaw[near]
-    cuts = [np.zeros(len(px)), np.full(len(px), math.tau)]
-    for level, turn in (
-        (wide - px, 0.0),
-        (-wide - px, 0.0),
-        (high - py, math.pi / 2),
-        (-high - py, math.pi / 2),
-    ):
-        half = np.arccos(np.clip(level / radius, -1.0, 1.0))
-        cuts += [np.remainder(turn - half, math.tau), np.remainder(turn + half, math.tau)]
-    at = np.sort(np.column_stack(cuts), axis=1)
-    begin, extent = at[:, :-1], np.diff(at, axis=1)
-    middle = begin + extent / 2
-    inside = (np.abs(px[:, None] + radius * np.cos(middle)) < wide[:, None]) & (
-        np.abs(py[:, None] + radius * np.sin(middle)) < high[:, None]
-    )
-    inside &= extent > 0.0
-    turned = np.remainder(begin + yaw[:, None], math.tau)
-    return np.column_stack([turned[inside], extent[inside]])

@@ -1,0 +1,42 @@
+"""Shapes of obstacles: each is one file that knows outline, distance, solid, ray faces, drawing.
+
+A shape of your own is a subclass of ``ConvexShape`` (or ``Shape``) with ``register_shape``, in a
+file that ``--plugin`` names; ``examples/extend/shape.py`` is one.
+"""
+
+from fuzzyq_bullet.shapes.base import (
+    GRAZE,
+    SHAPES,
+    Collision,
+    Obstacle,
+    Shape,
+    ShapeGroup,
+    register_shape,
+)
+
+from fuzzyq_bullet.shapes.cylinder import ROUNDNESS, Cylinder, Cylinders  # isort: skip
+from fuzzyq_bullet.shapes.box import Box, Boxes
+from fuzzyq_bullet.shapes.convex import ConvexPolygons, ConvexShape
+from fuzzyq_bullet.shapes.motion import MOTIONS, Motion, Pose, Still, register_motion
+
+__all__ = [
+    "GRAZE",
+    "MOTIONS",
+    "ROUNDNESS",
+    "SHAPES",
+    "Box",
+    "Boxes",
+    "Collision",
+    "ConvexPolygons",
+    "ConvexShape",
+    "Cylinder",
+    "Cylinders",
+    "Motion",
+    "Obstacle",
+    "Pose",
+    "Shape",
+    "ShapeGroup",
+    "Still",
+    "register_motion",
+    "register_shape",
+]
