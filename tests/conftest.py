@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -19,6 +20,10 @@ from fuzzyq_bullet.workers import Answer, WorkerPool
 # How long an example takes is the machine's affair: no test asserts a time.
 hypothesis.settings.register_profile("fuzzyq", deadline=None, max_examples=50)
 hypothesis.settings.load_profile("fuzzyq")
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # A job in the background of a script ignores Ctrl-C, and what it starts would do so too.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 SLOW = (
     *("check", "cli_interrupt", "cli_train", "cluster", "escape_table", "exploration"),
