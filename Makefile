@@ -45,7 +45,7 @@ demo: $(READY)
 	@$(BIN)/fuzzyq run mixed --out "$(OUT)"
 
 test: $(READY)
-	@$(BIN)/python -m pytest -n auto --maxprocesses 4 $(ARGS)
+	@$(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
 
 lint: $(READY)
 	@$(BIN)/ruff check .

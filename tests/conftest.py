@@ -26,10 +26,12 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 SLOW = (
-    *("check", "cli_interrupt", "cli_train", "cluster", "escape_table", "exploration"),
-    *("extend_study", "figure_panels", "ground_truth", "gym", "layouts", "learned_weights"),
-    *("learning_gain", "learning_training", "package", "pythons", "report", "success", "sweep"),
-    *("video", "video_picture"),
+    *("check", "cli", "cli_bad_input", "cli_interrupt", "cli_train", "cluster", "drives"),
+    *("early_warnings", "episode", "escape", "exploration", "extend_expectation"),
+    *("extend_panel", "extend_planner", "extend_sensor", "extend_study", "extend_world"),
+    *("figure_panels", "gate", "ground_truth", "gym", "layouts", "learned_weights"),
+    *("learning_gain", "learning_training", "outputs", "package", "pytest_plugin", "pythons"),
+    *("report", "success", "sweep", "unchanged", "video", "video_picture"),
 )
 """Modules of tests that take long: ``-m "not slow"`` leaves them out."""
 

@@ -36,7 +36,7 @@ def imports(module: str, tree: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def at_load(tree: ast.Module) -> ast.Module:
-    """Return what runs when a module is loaded: no body of a function, no import for types alone."""
+    """Return what runs when a module is loaded: no body of a function, no import for types."""
 
     class Loaded(ast.NodeTransformer):
         def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
@@ -53,7 +53,8 @@ def at_load(tree: ast.Module) -> ast.Module:
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
     graph = {
-        module: {other for other, _ in imports(module, at_load(tree)) if other in MODULES} - {module}
+        module: {other for other, _ in imports(module, at_load(tree)) if other in MODULES}
+        - {module}
         for module, tree in MODULES.items()
     }
     TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle

@@ -38,7 +38,7 @@ def test_the_example_is_in_the_film_below_all_that_was_there(
     without = frames(filmed / "short.mp4", HEIGHT)
     assert len(with_it) == len(without)
     yellow = []
-    for now, then in zip(with_it, without, strict=True):
+    for now, then in zip(with_it[::4], without[::4], strict=True):
         # What was there looks as it did; the two are compressed differently.
         assert np.abs(now[:HEIGHT].astype(int) - then).mean() < 1.5
         card = now[HEIGHT:].astype(int)

@@ -138,7 +138,7 @@ def middle_and_opening(drawn):
 @pytest.mark.parametrize("layout", TRAPS)
 def test_a_trap_stands_in_the_way_between_start_and_goal(layout):
     lengths = []
-    for seed in range(8):
+    for seed in range(12):
         drawn = realise(asked(layout), seed)
         route = shortest_path(drawn)
         assert route is not None

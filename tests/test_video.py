@@ -236,8 +236,8 @@ def test_memory_does_not_grow_with_the_run(tmp_path: Path) -> None:
             tracemalloc.stop()
 
     peak(standing(0.2, world))  # fonts and other things kept once
-    brief, long = peak(standing(0.3, world)), peak(standing(0.8, world))
-    assert long < brief + 700_000  # 15 frames more, of which a single one is 1.4 MB
+    brief, long = peak(standing(0.1, world)), peak(standing(0.5, world))
+    assert long < brief + 700_000  # 12 frames more, of which a single one is 1.4 MB
 
 
 def test_the_encoder_writes_every_byte_of_every_frame(

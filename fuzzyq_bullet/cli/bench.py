@@ -61,7 +61,6 @@ def _bench() -> None:
     pass
 
 
-@app.command("speed")
 def speed(
     *,
     rounds: Annotated[int, typer.Option(min=1, max=100, help="Interleaved rounds.")] = 7,
@@ -98,6 +97,9 @@ def speed(
     if missed:
         say("aims missed: " + "; ".join(row.what for row in missed), style="bold")
         raise typer.Exit(1)
+
+
+app.command("speed", help=help_of(speed))(speed)
 
 
 def _plugins_in(args: Sequence[str]) -> list[str]:
