@@ -75,7 +75,3 @@ Backend: TypeAlias = Annotated[str, typer.Option(help="loky (this machine), or d
 Scheduler: TypeAlias = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Of the Dask scheduler.")
 ]
-SweepSeed: TypeAlias = Annotated[int, typer.Option(help="Seed of the sweep.")]
-Runs: TypeAlias = Annotated[
-    int, typer.Option(min=1, max=100_000, help="Environments for every count.")
-]

@@ -107,8 +107,6 @@ class ShapeGroup(ABC):
 
     discs: Floats
     """Shape (P, 3): x, y and radius (m) of what is round, corners included, with radius 0."""
-    longest_face: float = 0.0
-    """Length of the longest flat face (m)."""
 
     @classmethod
     @abstractmethod

@@ -44,7 +44,6 @@ class Boxes(ShapeGroup):
         at = [x + cos * own_x - sin * own_y, y + sin * own_x + cos * own_y, np.zeros_like(own_x)]
         self.discs = np.stack(at, axis=2).reshape(-1, 3)
         self.discs.flags.writeable = False
-        self.longest_face = float(max(sx.max(initial=0.0), sy.max(initial=0.0)))
 
     @classmethod
     def of(cls, shapes: Sequence[Box]) -> Self:

@@ -52,7 +52,6 @@ class ConvexPolygons(ShapeGroup):
         self._real = real
         corners = start[real]
         self.discs = np.column_stack([corners, np.zeros(len(corners))])
-        self.longest_face = float(self._length.max(initial=0.0))
 
     @classmethod
     def of(cls, shapes: Sequence[ConvexShape]) -> Self:
