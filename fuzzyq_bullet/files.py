@@ -197,6 +197,14 @@ def _part(path: Path) -> Path:
 
 
 def _remove(folder: Path) -> None:
+    try:
+        _remove_once(folder)
+    except BaseException:  # an interrupt meanwhile, which comes once
+        _remove_once(folder)
+        raise
+
+
+def _remove_once(folder: Path) -> None:
     for _ in range(3):  # something may still have been written while the first was at work
         shutil.rmtree(folder, ignore_errors=True)
         with suppress(OSError):  # a name too long, which never was made

@@ -1,5 +1,7 @@
 """Files are written whole or not at all, and what goes wrong is one clear line."""
 
+import shutil
+
 import pytest
 
 from fuzzyq_bullet.errors import UserError
@@ -19,3 +21,18 @@ def test_what_stood_there_is_kept_when_the_new_text_cannot_be_written(tmp_path):
         write_text(path, "new \ud800")
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_interrupt_while_it_tidies_up_leaves_nothing(tmp_path, monkeypatch):
+    rmtree, interrupted = shutil.rmtree, []
+
+    def interrupted_once(folder, **more):
+        if not interrupted:
+            interrupted.append(folder)
+            raise KeyboardInterrupt
+        rmtree(folder, **more)
+
+    monkeypatch.setattr("fuzzyq_bullet.files.shutil.rmtree", interrupted_once)
+    with pytest.raises(KeyboardInterrupt):
+        write_text(tmp_path / "a.txt", "whole")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
