@@ -169,23 +169,24 @@ class Field:
                 np.minimum(least, self._to_obstacles(here, self._near(here)).min(1), out=least)
         return result
 
-    def clearance_on_ways(self, starts: ArrayLike, ends: ArrayLike) -> tuple[Floats, Floats]:
-        """Return the least distance on each straight way, and the place on it where that is.
+    def clearance_along(self, starts: ArrayLike, ends: ArrayLike) -> tuple[Floats, Floats]:
+        """Return the least clearance along each straight segment, and the point where it is.
 
         Args:
             starts: Shape (K, 2), in metres.
-            ends: Shape (K, 2), in metres. No way may lead into a box and
+            ends: Shape (K, 2), in metres. No segment may lead into an obstacle with flat faces and
                 out again.
 
         Returns:
-            Signed distances (m), shape (K,), as of ``clearance``, and places (m), shape (K, 2).
+            Signed distances (m), shape (K,), as of ``clearance``, and points (m), shape (K, 2).
         """
         a = np.asarray(starts, dtype=np.float64).reshape(-1, 2)
         b = np.asarray(ends, dtype=np.float64).reshape(-1, 2)
         at_start, least = self.clearance(a), self.clearance(b)
         places = np.where((at_start <= least)[:, None], a, b)
         np.minimum(least, at_start, out=least)
-        # A flat face is nearest to an end of a way: between them only what is round can be nearer.
+        # A flat face is nearest to an end of a segment. In between only something round can be, or
+        # a corner, which is a disc of radius 0.
         discs = self.discs
         centres, radii = discs[:, :2], discs[:, 2]
         rows = max(1, _CHUNK // max(1, len(radii)))

@@ -301,7 +301,7 @@ def _clearance(field: Obstacles, positions: Floats, drive: str) -> Floats:
     The point robot's moves may be long: what counts is the least on the way to each tick.
     """
     if drive == "kinematic":
-        return field.clearance_on_ways(positions[[0, *range(len(positions) - 1)]], positions)[0]
+        return field.clearance_along(positions[[0, *range(len(positions) - 1)]], positions)[0]
     return field.clearance(positions)
 
 

@@ -93,7 +93,7 @@ def test_the_least_clearance_on_a_way_is_the_least_of_all_its_points(
     apart = math.dist(start, end) / 399
     sampled = field.clearance(points).min()
     assume(field.clearance(points).max() > 0 and (sampled > 0 or not boxes))
-    [least], [place] = field.clearance_on_ways([start], [end])
+    [least], [place] = field.clearance_along([start], [end])
     assert math.isclose(least, field.clearance([place])[0], abs_tol=1e-9)
     assert sampled - apart / 2 - 1e-9 <= least <= sampled + 1e-9
 
@@ -102,9 +102,9 @@ def test_many_ways_have_the_clearances_that_each_has_alone(monkeypatch):
     rng = np.random.default_rng(5)
     field = make(rng.uniform(0.1, 3.0, (7, 3)), rng.uniform(0.1, 3.0, (5, 5)), ARENA)
     a, b = rng.uniform(-9.0, 9.0, (2, 60, 2))
-    alone = [field.clearance_on_ways(p, q) for p, q in zip(a, b, strict=True)]
+    alone = [field.clearance_along(p, q) for p, q in zip(a, b, strict=True)]
     monkeypatch.setattr("fuzzyq_bullet.geometry._CHUNK", 100)
-    least, places = field.clearance_on_ways(a, b)
+    least, places = field.clearance_along(a, b)
     np.testing.assert_array_equal(least, [one[0][0] for one in alone])
     np.testing.assert_array_equal(places, [one[1][0] for one in alone])
 

@@ -360,7 +360,10 @@ def test_the_solutions_solve_bellman_s_equation() -> None:
     q = cliff.solution(discount)
     for state in np.flatnonzero(~np.isnan(q[:, 0])).tolist():
         for action in range(4):
-            cliff._at = divmod(state, 12)
+            cliff.reset(0)
+            row, column = divmod(state, 12)
+            for go in [0] * (3 - row) + [1] * column:  # up, then to the right
+                cliff.step(go)
             after, reward, over = cliff.step(action)
             best = 0.0 if over else q[after].max()
             assert q[state, action] == pytest.approx(reward + discount * best)

@@ -54,18 +54,18 @@ class FeaturedWalk:
         self._walk = RandomWalk(5, seed=seed)
 
     def reset(self, episode: int, /) -> Features:
-        return self._features(self._walk.reset(episode))
+        return self.features(self._walk.reset(episode))
 
     def step(self, action: int, /) -> tuple[Features, float, bool]:
         place, reward, over = self._walk.step(action)
-        return self._features(place), reward, over
+        return self.features(place), reward, over
 
     @property
     def outcome(self) -> str:
         return self._walk.outcome
 
     @staticmethod
-    def _features(place: int) -> Features:
+    def features(place: int) -> Features:
         right = place / 4
         return Features.of([max(0.0, 1 - 2 * right), 1 - abs(1 - 2 * right), max(0, 2 * right - 1)])
 
@@ -107,7 +107,7 @@ def test_the_curve_tells_each_episode() -> None:
 def test_features_are_trained_on_as_tables_are() -> None:
     one = LinearQLambda(3, 1, discount=1.0)
     train(FeaturedWalk(), one, Setup(1000, rate=Schedule(0.2, 0.1995), trace_decay=Schedule(0.5)))
-    values = [one.values(FeaturedWalk._features(place))[0] for place in range(5)]
+    values = [one.values(FeaturedWalk.features(place))[0] for place in range(5)]
     assert values == pytest.approx([1 / 6, 2 / 6, 3 / 6, 4 / 6, 5 / 6], abs=0.06)
 
 

@@ -170,7 +170,7 @@ def nearest(trajectory: Trajectory, source: Source) -> Touch:
     i = int(np.argmin(ticks.clearance))
     x, y = ticks.position[i].tolist()
     if scenario.drive == "kinematic" and i:  # somewhere on the way to that tick
-        _, places = field.clearance_on_ways(ticks.position[i - 1], ticks.position[i])
+        _, places = field.clearance_along(ticks.position[i - 1], ticks.position[i])
         x, y = places[0].tolist()
     closest, _ = field.nearest((x, y))
     return Touch(

@@ -33,7 +33,7 @@ def guard(command: Callable[[], int]) -> NoReturn:
     Its output may end in a pipe that closes early, which changes nothing about the verdict. A
     user's own code runs in a second process, so that what that does to it is no verdict either.
     """
-    report = _supervise(_SIGNALS, _lost) if _has_plugins() else None
+    report = _supervise() if _has_plugins() else None
     try:
         _catch_signals()
         _set_up_streams()
@@ -53,16 +53,10 @@ def _has_plugins() -> bool:
     return hasattr(os, "fork") and any(word.startswith("--plugin") for word in sys.argv[1:])
 
 
-def _supervise(
-    signals: tuple[signal.Signals, ...], lost: Callable[[str], int]
-) -> Callable[[int], None]:
+def _supervise() -> Callable[[int], None]:
     """Let a second process do all that follows; this one ends with the exit code that it reports.
 
     So ``os._exit(0)`` in a planner, or a crash of a library, is no success.
-
-    Args:
-        signals: What asks a process to end, and is handed on.
-        lost: Says how the second process ended without a word, and returns the exit code.
 
     Returns:
         What reports the exit code. Only the second process comes back from here.
@@ -79,7 +73,7 @@ def _supervise(
     def hand_on(signum: int, frame: FrameType | None) -> None:
         os.kill(child, signum)
 
-    for signum in signals:
+    for signum in _SIGNALS:
         if signal.getsignal(signum) is not signal.SIG_IGN:
             signal.signal(signum, hand_on)
     _, state = os.waitpid(child, 0)
@@ -88,19 +82,18 @@ def _supervise(
         told = os.read(reading, 1)
     except BlockingIOError:
         told = b""
+    if told:
+        os._exit(told[0])
     from fuzzyq_bullet.wording import end_in_words
 
-    os._exit(told[0] if told else lost(end_in_words(os.waitstatus_to_exitcode(state))))
+    how = end_in_words(os.waitstatus_to_exitcode(state))
+    say_error(f"nothing came of it: {how}")
+    os._exit(BAD_INPUT)
 
 
 def _report(pipe: int, status: int) -> None:
     os.write(pipe, bytes([status]))
     os.close(pipe)
-
-
-def _lost(how: str) -> int:
-    say_error(f"nothing came of it: {how}")
-    return BAD_INPUT
 
 
 def _status_of(command: Callable[[], int]) -> int:

@@ -78,7 +78,9 @@ class Goal(Model):
 
 def _known_robot(name: str) -> str:
     if name not in robot_names():
-        raise PydanticCustomError("unknown_robot", "must be one of {allowed}", {"allowed": name})
+        raise PydanticCustomError(
+            "unknown_robot", "must be one of {allowed}", {"allowed": list(robot_names())}
+        )
     return name
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -82,24 +83,16 @@ def _paper_setup(episodes: int, seed: int) -> Setup:
     return Setup(episodes=episodes, seed=seed)
 
 
-register_recipe(
-    Recipe(
-        planner="q-learning",
-        spec=DIRECT["q-learning"],
-        problem=DirectProblem,
-        learner=lambda: QLearning(*DIRECT["q-learning"].shape),
-        setup=_paper_setup,
+for _planner, _learner in (("q-learning", QLearning), ("q-lambda", QLambda)):
+    register_recipe(
+        Recipe(
+            planner=_planner,
+            spec=DIRECT[_planner],
+            problem=DirectProblem,
+            learner=partial(_learner, *DIRECT[_planner].shape),
+            setup=_paper_setup,
+        )
     )
-)
-register_recipe(
-    Recipe(
-        planner="q-lambda",
-        spec=DIRECT["q-lambda"],
-        problem=DirectProblem,
-        learner=lambda: QLambda(*DIRECT["q-lambda"].shape),
-        setup=_paper_setup,
-    )
-)
 register_recipe(
     Recipe(
         planner="fuzzy-q-lambda",
