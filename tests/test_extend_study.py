@@ -36,6 +36,9 @@ def test_a_study_of_ones_own_is_a_command_that_goes_on_and_is_in_the_report(
     assert json.loads(again.stdout) == json.loads((home / "turn-weight.json").read_text())
     assert (home / "turn-weight.csv").read_bytes() == table
 
+    unknown = fuzzyq("report", tmp_path, "--no-videos", "--no-figures")
+    assert unknown.returncode == 2
+    assert "no study 'turn-weight' is known; --plugin FILE adds it" in unknown.stderr
     shown = fuzzyq("report", tmp_path, "--plugin", EXAMPLE, "--no-videos", "--no-figures")
     assert shown.returncode == 0, shown.stderr
     page = (tmp_path / "report.html").read_text()

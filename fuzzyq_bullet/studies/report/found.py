@@ -15,6 +15,7 @@ from fuzzyq_bullet.studies.registry import study_names, study_of
 from fuzzyq_bullet.studies.runner.rows import Row, from_csv
 from fuzzyq_bullet.studies.runner.storage import MAX_BYTES, rows_in, settings_in
 from fuzzyq_bullet.studies.study import Study, Swept
+from fuzzyq_bullet.wording import shorten
 
 _DEPTH = 3
 """Folders below the one given that are looked into: room for ``paper/steps/table`` in ``out``."""
@@ -113,6 +114,8 @@ def _read(folder: Path) -> tuple[str, str, Swept] | None:
         return None
     name, *stages = str(told.get("sweep")).split()
     if name not in study_names():
+        if "sweep" in told and journal.exists():
+            raise UserError(f"{path}: no study {shorten(name)} is known; --plugin FILE adds it")
         return None
     stage = stages[0] if stages else name
     kind = study_of(name).stage_kinds().get(stage)
