@@ -24,6 +24,7 @@ from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.geometry import Field as Obstacles
 from fuzzyq_bullet.planning.decision import FIELDS, Decision
 from fuzzyq_bullet.scenario.models import ANY_NAME, Scenario
+from fuzzyq_bullet.scenario.problems import unknown_names
 from fuzzyq_bullet.version import __version__
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -241,10 +242,12 @@ class Trajectory:
     def load(cls, path: Path | str) -> Trajectory:
         """Read a record written by ``save``.
 
-        Of a planner that is not registered here only the name is kept: what it did is all there.
+        Of a planner or sensor that is not registered here only the name is kept: what it did is all
+        there. Shapes, motions and the robot must be registered.
 
         Raises:
-            UserError: If the file is missing, damaged, or not a record of this format.
+            UserError: If the file is missing, damaged, or not a record of this format, or if it was
+                made with what is not registered here.
         """
         arrays = read_arrays(Path(path))
         try:
@@ -262,6 +265,9 @@ class Trajectory:
             _check(ticks, decisions)
             _check_collision(head.collision, head.scenario)
         except ValidationError as error:
+            if names := unknown_names(error):
+                missing = f"made with {' and '.join(names)}, not known here"
+                raise UserError(f"{path}: {missing}; --plugin FILE adds it") from error
             first = error.errors(include_url=False)[0]
             where = ".".join(str(part) for part in first["loc"])
             raise UserError(f"{path}: damaged record: {where}: {first['msg']}") from error

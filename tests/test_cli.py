@@ -208,6 +208,33 @@ def test_schema_is_one_that_the_bundled_scenarios_fulfil(fuzzyq: Call) -> None:
         validator.validate(yaml.safe_load(path.read_text()))
 
 
+def test_the_schema_knows_what_plugins_add(fuzzyq: Call) -> None:
+    extend = Path(__file__).parent.parent / "examples" / "extend"
+    kinds = ("shape", "motion", "layout", "robot", "planner", "sensor", "expectation")
+    told = fuzzyq(
+        "schema", *(word for kind in kinds for word in ("--plugin", extend / f"{kind}.py"))
+    )
+    assert told.returncode == 0, told.stderr
+    validator = jsonschema.Draft202012Validator(json.loads(told.stdout))
+    pillar = {"shape": "pillar", "position": [1.2, 0.4], "radius": 0.2}
+    scenario = {
+        "name": "room",
+        "start": {"position": [0.6, 0.6]},
+        "goal": {"position": [1.8, 0.7]},
+        "obstacles": [{**pillar, "motion": {"kind": "swing", "angle": 0.0}}],
+        "random": {"layout": "orchard", "spacing": 1.0},
+        "robot": {"model": "mouse"},
+        "planner": {"name": "greedy", "room": 0.4},
+        "sensor": {"model": "rounded", "step": 0.1},
+        "expect": {"max_turning": 20.0},
+    }
+    validator.validate(scenario)
+    wrong = {"obstacles": [{**pillar, "sides": 2}], "planner": {"name": "greedy", "rooms": 1}}
+    wrong |= {"random": {"layout": "orchard", "spacing": 0.1}, "robot": {"model": "mole"}}
+    for key, value in wrong.items():
+        assert not validator.is_valid({**scenario, key: value}), key
+
+
 def test_list_names_every_bundled_scenario(inside: Call) -> None:
     table, data = inside("list"), json.loads(inside("list", "--json").stdout)
     assert [line.split()[0] for line in table.stdout.splitlines()] == list(data)

@@ -381,7 +381,7 @@ def test_a_scenario_inside_a_record_is_held_to_the_same_rules(filmed: Path, tmp_
     for spoil, word in (
         (lambda s: s["goal"].update(position=[float("nan"), 0.0]), "goal.position"),
         (lambda s: s["planner"].update(name=7), "planner"),
-        (lambda s: s["obstacles"].append({"shape": "cone"}), "obstacles"),
+        (lambda s: s["obstacles"].append({"shape": "box"}), "obstacles"),
         (lambda s: s.update(name="../../etc/passwd"), "name"),
     ):
         meta = json.loads(str(arrays["meta"]))

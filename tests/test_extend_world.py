@@ -45,6 +45,12 @@ def test_a_shape_is_validated_driven_around_filmed_and_checked(
     assert 1.02 < told["shortest_path_m"] <= told["path_length_m"]
     assert (room.parent / "room.mp4").stat().st_size > 10_000
     assert fuzzyq("check", room, *plugin).returncode == 0
+    with pytest.raises(UserError) as missing:
+        inside("replay", room.parent / "room.npz")
+    assert missing.value.problems == (
+        f"{room.parent}/room.npz: made with the shape 'pillar', not known here; "
+        "--plugin FILE adds it",
+    )
 
     room.write_text(room.read_text().replace("sides: 3", "sides: 2"))
     wrong = fuzzyq("validate", room, *plugin)
@@ -75,6 +81,8 @@ def test_a_robot_drives_by_its_own_radius_and_limits(
     assert 0.3 < speeds.max() <= 0.42
     lengths = next(record[name] for name in record.files if name.endswith("lengths"))
     assert lengths.max() <= 0.75 + 1e-9  # 5·S_p
+    with pytest.raises(UserError, match=r"npz: made with the robot 'mouse', .* --plugin FILE"):
+        inside("replay", room.parent / "room.npz")
 
     room.write_text(room.read_text().replace("{model: mouse}", "{model: fuzzyq}"))
     assert "there is no way from the start" in inside("validate", room).stderr
@@ -102,13 +110,25 @@ def test_a_motion_is_known_and_what_would_move_is_refused(fuzzyq: Call, room: Pa
         assert line.startswith("error: ") is (code == 2)
 
 
+def test_a_motion_that_is_not_there_is_named_by_a_record(filmed: Path, tmp_path: Path) -> None:
+    arrays = dict(np.load(filmed / "short.npz"))
+    meta = json.loads(str(arrays["meta"]))
+    for obstacle in meta["scenario"]["obstacles"]:
+        obstacle["motion"] = {"kind": "swing", "angle": 0.0}
+    meta["scenario"]["robot"]["model"] = "mouse"
+    path = tmp_path / "short.npz"
+    np.savez(path, **{**arrays, "meta": np.array(json.dumps(meta))})
+    with pytest.raises(UserError, match="made with the robot 'mouse' and the motion 'swing', not"):
+        Trajectory.load(path)
+
+
 def test_a_layout_is_drawn_from_the_seed(fuzzyq: Call, inside: Call, room: Path) -> None:
     room.write_text(ROOM + "random: {layout: orchard, spacing: 0.9}\n")
     plugin = ("--plugin", EXTEND / "layout.py")
     done = fuzzyq("run", room, *plugin, "--out", room.parent, "--no-video", "--json")
     assert done.returncode == 0, done.stderr
     record = Trajectory.load(room.parent / "room.npz")
-    assert 3 <= len(record.scenario.obstacles) <= 6
+    assert 3 <= len(record.scenario.obstacles) <= 6  # and the layout is needed no more
     with pytest.raises(UserError, match="no layout 'orchard'"):
         inside("validate", room)
 

@@ -52,8 +52,8 @@ def _look_at(file: str) -> tuple[tuple[str, ...], list[str]]:
         return error.problems, []
 
 
-def schema() -> None:
-    """Print the JSON Schema of scenario files."""
+def schema(*, plugin: PluginOption = None) -> None:
+    """Print the JSON Schema of scenario files, with what plugins add to them."""
     from fuzzyq_bullet.scenario import scenario_schema
 
     typer.echo(dumps(scenario_schema(), indent=2))

@@ -74,6 +74,19 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
     return list(found.values())
 
 
+def unknown_names(error: ValidationError) -> list[str]:
+    """Return what a scenario names that is not registered here, such as ``the shape 'pillar'``."""
+    names = []
+    for item in error.errors(include_url=False)[:MAX_WORDED]:
+        if item["type"] == "union_tag_invalid":
+            key = item["ctx"]["discriminator"].strip("'")
+            kind = "motion" if key == MOTIONS.key else key
+            names.append(f"the {kind} {shorten(item['ctx']['tag'])}")
+        elif item["type"] == "unknown_robot":
+            names.append(f"the robot {shorten(item['input'])}")
+    return list(dict.fromkeys(names))[:MAX_SHOWN]
+
+
 def _is_short_list(error: dict[str, Any]) -> bool:
     """Tell a list with too few items, of which pydantic reports each absent item."""
     return error["type"] == "missing" and isinstance(error["loc"][-1], int)
