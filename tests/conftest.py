@@ -62,10 +62,11 @@ def fuzzyq() -> Call:
     """The installed command, in a process of its own."""
 
     def call(
-        *args: object, cwd: Path | None = None, **more: object
+        *args: object, cwd: Path | None = None, timeout: float = 120, **more: object
     ) -> subprocess.CompletedProcess[str]:
+        command = [FUZZYQ, *map(str, args)]
         return subprocess.run(  # type: ignore[call-overload, no-any-return]
-            [FUZZYQ, *map(str, args)], cwd=cwd, capture_output=True, text=True, timeout=120, **more
+            command, cwd=cwd, capture_output=True, text=True, timeout=timeout, **more
         )
 
     return call

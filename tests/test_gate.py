@@ -234,6 +234,25 @@ def test_what_a_plugin_does_at_the_end_changes_no_verdict(
     assert done.returncode == status
 
 
+FOR_EVER = "threading.Event().wait"
+
+
+@pytest.mark.parametrize(
+    "plugin",
+    [f"threading.Thread(target={FOR_EVER}).start()", f"atexit.register({FOR_EVER})"],
+    ids=["a thread", "a function at the end"],
+)
+def test_a_plugin_that_never_ends_keeps_no_verdict(
+    plugin: str, fuzzyq: Call, tmp_path: Path
+) -> None:
+    (tmp_path / "p.py").write_text(f"import atexit, threading\n{plugin}\n")
+    (tmp_path / "s.yaml").write_text(SIMPLE + "expect: {max_time: 1}\n")
+    done = fuzzyq("check", "s.yaml", "--plugin", "p.py", cwd=tmp_path, timeout=30)
+    assert (done.returncode, done.stdout[:4]) == (1, "FAIL")
+    wrong = fuzzyq("run", "nowhere", "--plugin", "p.py", cwd=tmp_path, timeout=30)
+    assert (wrong.returncode, wrong.stderr[:6]) == (2, "error:")
+
+
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="Windows has other signals")
 def test_an_interrupt_reaches_a_command_with_plugins(tmp_path: Path) -> None:
     (tmp_path / "p.py").write_text("import time\nprint('loading', flush=True)\ntime.sleep(60)\n")

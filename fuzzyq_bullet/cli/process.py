@@ -5,11 +5,13 @@ Imports the standard library only, so that it is in place before anything slow i
 
 from __future__ import annotations
 
+import atexit
 import io
 import os
 import signal
 import sys
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
 from fuzzyq_bullet.errors import Stopped, UserError, printable
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
 
 BAD_INPUT = 2
 _GRACE = 2.0
-"""Time (s) in which nothing interrupts the tidying up after an interrupt, nor one an import."""
+"""Time (s) in which nothing interrupts the tidying up after an interrupt, nor one an import; and
+that a plugin has to tidy up at the end."""
 _SOON = 0.02
 """Time (s) after which an interrupt is tried again that came at a bad time."""
 
@@ -45,6 +48,7 @@ def guard(command: Callable[[], int]) -> NoReturn:
         status = stopped.status
     if report is not None:
         report(status)
+        _leave(status)
     sys.exit(status)
 
 
@@ -94,6 +98,20 @@ def _supervise() -> Callable[[int], None]:
 def _report(pipe: int, status: int) -> None:
     os.write(pipe, bytes([status]))
     os.close(pipe)
+
+
+def _leave(status: int) -> NoReturn:
+    """End this process now, whatever a plugin still does: the exit code is reported already.
+
+    Its threads are not waited for, and its functions of ``atexit`` have ``_GRACE``.
+    """
+    if _TIMER is not None:  # then the kernel ends the process
+        signal.signal(_TIMER, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_REAL, _GRACE)
+    atexit._run_exitfuncs()
+    with suppress(ValueError):  # a plugin has closed it
+        sys.stderr.flush()
+    os._exit(status)
 
 
 def _status_of(command: Callable[[], int]) -> int:
