@@ -43,7 +43,10 @@ def test_a_study_of_ones_own_is_a_command_that_goes_on_and_is_in_the_report(
     assert shown.returncode == 0, shown.stderr
     page = (tmp_path / "report.html").read_text()
     assert "Weights of the turn" in page
-    assert "fuzzyq bench turn-weight --counts 5 --runs 2 --seed 0" in page
+    assert (
+        f"fuzzyq bench turn-weight --counts 5 --runs 2 --seed 0 --out {home} --plugin {EXAMPLE}\n"
+        f"fuzzyq report {tmp_path} --no-videos --no-figures --plugin {EXAMPLE}<"
+    ) in page
 
 
 def test_a_name_that_cannot_be_a_command_or_is_taken_is_refused() -> None:

@@ -68,7 +68,15 @@ def report(
     pictures = {number: one for number in drawn if isinstance(one := named[number], bytes)}
     command = f"fuzzyq report {shlex.quote(str(folder))}"
     command += ("" if videos else " --no-videos") + ("" if figures else " --no-figures")
-    shown = page(folder, found, films if videos else None, pictures if figures else None, command)
+    command += "".join(f" --plugin {shlex.quote(name)}" for name in plugin or [])
+    shown = page(
+        folder,
+        found,
+        films if videos else None,
+        pictures if figures else None,
+        command,
+        plugin or [],
+    )
     write_text(target, shown)
     for _, swept in sweeps:
         if not swept.finished:

@@ -27,6 +27,7 @@ def page(
     films: Mapping[Place, Film] | None,
     figures: Mapping[int, bytes] | None,
     command: str,
+    plugins: Sequence[str] = (),
 ) -> str:
     """Return the whole page.
 
@@ -36,6 +37,7 @@ def page(
         films: The runs to be watched; None to leave them out.
         figures: The paper's figures, as PNGs, by number; None to leave them out.
         command: The command that makes this page.
+        plugins: What that was given by ``--plugin``.
     """
     heads, shown = [], []
     for one in found:
@@ -45,7 +47,7 @@ def page(
                 heads.append(sections.table(findings.headline))
             mine = None if films is None or not one.kind.filmed else _of(films, one.folder)
             shown.append(sections.of_study(one, one.study, findings, mine))
-    shown += [_figures(figures), sections.made(found, folder, command)]
+    shown += [_figures(figures), sections.made(found, folder, command, plugins)]
     unfinished = [sections.unfinished(swept) for one in found for swept in one.results.values()]
     missing = _missing(folder, found)
     links = [tag("li", tag("a", one.title, href=f"#{one.name}")) for one in shown]

@@ -6,11 +6,13 @@ import io
 import json
 import platform
 import re
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
+from fuzzyq_bullet.outputs import plugin_inputs
 from fuzzyq_bullet.platforms import pybullet_in_words
 from fuzzyq_bullet.studies.report.films import RULE, SIZE, Film
 from fuzzyq_bullet.studies.report.found import Found
@@ -73,15 +75,21 @@ def of_study(found: Found, study: Study, findings: Findings | None, films: Films
     return Section(name, study.heading(), join(*parts))
 
 
-def made(found: Sequence[Found], folder: Path, report: str) -> Section:
+def made(found: Sequence[Found], folder: Path, report: str, plugins: Sequence[str] = ()) -> Section:
     """Return by which commands, settings and versions all was made.
 
     Args:
         found: All studies.
         folder: Where they are.
         report: The command that made the page.
+        plugins: What that was given by ``--plugin``.
     """
-    lines = [one.study.command(one.folder) for one in found if one.study is not None]
+    files = {path.name: name for name in plugins for path in plugin_inputs([name])}
+    lines = [
+        " ".join([one.study.command(one.folder), *_plugins_of(one, files)])
+        for one in found
+        if one.study is not None
+    ]
     sweeps = [swept for one in found for swept in one.results.values()]
     versions = {swept.plan.version for swept in sweeps}
     others = sorted(versions - {__version__})
@@ -120,6 +128,18 @@ def made(found: Sequence[Found], folder: Path, report: str) -> Section:
         *settings,
     )
     return Section("made", "How it was made", body)
+
+
+def _plugins_of(found: Found, files: Mapping[str, str]) -> list[str]:
+    """Return the options by which plugins were loaded for a study.
+
+    Args:
+        found: What there is of it; settings hold the names of files alone.
+        files: The plugins that are loaded now, by those names.
+    """
+    told = [swept.settings.get("plugins") for swept in found.results.values()]
+    names = dict.fromkeys(name for one in told if isinstance(one, Mapping) for name in one)
+    return [f"--plugin {shlex.quote(files.get(name, name))}" for name in names]
 
 
 def table(one: Table) -> Html:
