@@ -107,6 +107,33 @@ def refuse_other_run(record: Path, others: Iterable[Path], scenario: Scenario) -
         )
 
 
+def refuse_others_file(path: Path, mark: str) -> None:
+    """Make sure that a file that is there was made by the command that is to make it again.
+
+    Args:
+        path: The file that is to be written.
+        mark: What stands near the beginning of all that the command writes.
+
+    Raises:
+        UserError: If it was not.
+    """
+    if not os.path.lexists(path):
+        return
+    head = b""
+    if path.is_file():  # nor anything that would keep a reader waiting
+        with path.open("rb") as file:
+            head = file.read(_HEAD)
+    if mark.encode() not in head:
+        raise UserError(
+            f"{path}: is there already, and not made by {mark}; "
+            "--replace replaces it, another --out keeps it"
+        )
+
+
+_HEAD = 4096
+"""Bytes of a file within which a mark is looked for."""
+
+
 def _differences(before: Scenario, now: Scenario) -> list[str]:
     old, new = (one.model_dump(exclude=_ASIDE) for one in (before, now))
     return [key for key in new if old[key] != new[key]]

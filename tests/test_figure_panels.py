@@ -14,7 +14,7 @@ from test_unchanged import SAME_SINES, known, told
 
 from fuzzyq_bullet import load_scenario, result_of, run, with_options
 from fuzzyq_bullet.cli.figure import figure
-from fuzzyq_bullet.experiments.figures import FIGURES, panels
+from fuzzyq_bullet.experiments.figures import FIGURES, MARK, panels
 from fuzzyq_bullet.experiments.figures.panels import Grid, Panel, picture, scenario_of
 from fuzzyq_bullet.experiments.figures.runs import FIGURES as RUNS
 from fuzzyq_bullet.experiments.figures.topdown import HIT, LEAVES, LEGEND, PATH, TEMPORARY, draw_run
@@ -74,6 +74,7 @@ def test_every_panel_of_a_figure_ends_as_its_scenario_promises(
     assert capsys.readouterr().out == f"{tmp_path / f'figure{number}.png'}\n"
     with Image.open(tmp_path / f"figure{number}.png") as image:
         assert image.width >= 1000
+        assert image.info["Software"] == MARK  # by which the command knows its own
     assert [one.scenario.name for one in runs] == [
         f"figure-{number}{letter}" for letter in LETTERS[number]
     ]

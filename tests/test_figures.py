@@ -45,6 +45,20 @@ def test_the_same_figure_is_drawn_again_to_the_byte(tmp_path: Path) -> None:
     assert one == other
 
 
+def test_a_picture_that_is_no_figure_of_ours_is_replaced_only_when_asked_to(tmp_path: Path) -> None:
+    mine = tmp_path / "figure4.png"
+    Image.new("RGB", (200, 200)).save(mine)
+    before = mine.read_bytes()
+    with pytest.raises(UserError, match=r"figure4.png: is there already, .* --replace"):
+        figure(4, tmp_path)
+    assert mine.read_bytes() == before
+    figure(4, tmp_path, replace=True)
+    drawn = mine.read_bytes()
+    assert drawn != before
+    figure(4, tmp_path)  # its own
+    assert mine.read_bytes() == drawn
+
+
 def test_an_unknown_figure_is_refused_and_the_known_are_named(tmp_path: Path) -> None:
     with pytest.raises(UserError) as caught:
         figure(99, tmp_path)

@@ -397,6 +397,22 @@ def test_a_mistake_is_one_line_and_leaves_nothing_behind(
         assert not (folder / "report.html").exists()
 
 
+def test_a_page_of_somebody_elses_is_replaced_only_when_asked_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = success(tmp_path / "success", plan_of(*PLANNERS))
+    page = folder / "report.html"
+    page.write_text("<!doctype html>\n<title>Mine</title>\n")
+    with pytest.raises(UserError, match=r"report.html: is there already, .* --replace"):
+        report(monkeypatch, folder, *PLAIN)
+    assert "Mine" in page.read_text()
+    report(monkeypatch, folder, *PLAIN, "--replace")
+    made = page.read_text()
+    assert "Mine" not in made
+    report(monkeypatch, folder, *PLAIN)  # its own
+    assert page.read_text() == made
+
+
 def test_a_page_that_cannot_be_written_is_told_before_the_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

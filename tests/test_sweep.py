@@ -351,6 +351,22 @@ def test_the_folder_of_another_sweep_is_refused_and_stays_as_it_is(
     assert {path: path.read_bytes() for path in before} == before
 
 
+@pytest.mark.parametrize("name", ["escape.csv", "escape.json"])
+def test_what_no_sweep_has_made_is_replaced_only_when_asked_to(
+    name: str, undisturbed: Path, inside: Call, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_text("mine\n")
+    for _ in range(2):  # what is refused makes nothing its own
+        with pytest.raises(UserError, match=rf"{name}: is there already, .* --replace"):
+            inside(*ESCAPE, "--out", tmp_path)
+        assert [path.name for path in tmp_path.iterdir()] == [name]
+    with no_workers():
+        assert inside(*ESCAPE, "--out", tmp_path, "--replace").returncode in (0, 1)
+    assert (tmp_path / "escape.csv").read_bytes() == (undisturbed / "escape.csv").read_bytes()
+    json.loads((tmp_path / "escape.json").read_text())
+    assert "0 episodes" in inside(*ESCAPE, "--out", tmp_path).stderr
+
+
 MISTAKES = {
     ("--counts", "5,-1"): ["--counts", "'-1'", "0 to 10000"],
     ("--counts", "10001"): ["--counts", "0 to 10000"],

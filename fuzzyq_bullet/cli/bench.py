@@ -14,7 +14,16 @@ import typer
 from typer.core import TyperGroup
 
 from fuzzyq_bullet.cli.console import progress_bar, say
-from fuzzyq_bullet.cli.options import FOLDER, Backend, Jobs, Json, PluginOption, Scheduler, help_of
+from fuzzyq_bullet.cli.options import (
+    FOLDER,
+    Backend,
+    Jobs,
+    Json,
+    PluginOption,
+    ReplaceOthersOption,
+    Scheduler,
+    help_of,
+)
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -118,12 +127,14 @@ def _command_of(study: type[Study]) -> Callable[..., None]:
         scheduler: Scheduler = None,
         out: Annotated[Path, typer.Option(help="Folder of the study.", **FOLDER)] = Path(),
         plugin: PluginOption = None,
+        replace: ReplaceOthersOption = False,
         json: Json = False,
         **given: Any,
     ) -> None:
         from fuzzyq_bullet.cli.study import run_study
 
-        run_study(_asked(study, given), out, (backend, scheduler, jobs), plugin or [], json=json)
+        asked, where = _asked(study, given), (backend, scheduler, jobs)
+        run_study(asked, out, where, plugin or [], replace=replace, json=json)
 
     fields = sorted(study.model_fields.items(), key=lambda one: one[0] == "seed")
     options = [

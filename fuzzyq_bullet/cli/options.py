@@ -65,6 +65,9 @@ SpeedOption: TypeAlias = Annotated[
 ReplaceOption: TypeAlias = Annotated[
     bool, typer.Option("--replace", help="Replace files of another run of that name.")
 ]
+ReplaceOthersOption: TypeAlias = Annotated[
+    bool, typer.Option("--replace", help="Replace files that this command did not make.")
+]
 Json: TypeAlias = Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")]
 
 Jobs: TypeAlias = Annotated[

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.options import FILE, Jobs, PluginOption
+from fuzzyq_bullet.cli.options import FILE, Jobs, PluginOption, ReplaceOthersOption
 
 
 def report(
@@ -28,6 +28,7 @@ def report(
     ] = True,
     jobs: Jobs = None,
     plugin: PluginOption = None,
+    replace: ReplaceOthersOption = False,
 ) -> None:
     """Make one page of what the studies of fuzzyq bench wrote below DIR.
 
@@ -35,12 +36,14 @@ def report(
     of runs made again from their seeds, and held to the digests of their rows.
 
     Raises:
-        UserError: If DIR holds no sweep, one is damaged, or the page cannot be written.
+        UserError: If DIR holds no sweep, one is damaged, or the page cannot be written, or is there
+            and no page of this command's.
     """
     from fuzzyq_bullet.cli.console import progress_bar, say
     from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
-    from fuzzyq_bullet.outputs import plugin_inputs
+    from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
     from fuzzyq_bullet.studies.report.found import studies_below
+    from fuzzyq_bullet.studies.report.markup import MARK
 
     found = studies_below(folder)
     target = folder / "report.html" if out is None else out
@@ -52,6 +55,8 @@ def report(
         for name in ("settings.json", "journal.jsonl", f"{stage}.csv")
     ]
     refuse_inputs([target], [*sources, *plugin_inputs(plugin or [])])
+    if not replace:
+        refuse_others_file(target, MARK)
 
     from fuzzyq_bullet.experiments.figures import FIGURES
     from fuzzyq_bullet.studies.report.films import Film, Wanted, make, wanted_films

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +32,7 @@ def run_study(
     where: tuple[str, str | None, int | None],
     plugins: Sequence[str],
     *,
+    replace: bool,
     json: bool,
 ) -> None:
     """Run a study, write what it found, and print it; exit code 1 when targets are missed.
@@ -40,11 +42,12 @@ def run_study(
         out: Its folder.
         where: Backend, address of its scheduler, and how many episodes at a time.
         plugins: Modules that each worker imports first.
+        replace: Whether files may be replaced that no sweep of these settings has made.
         json: Whether to print JSON, alone.
 
     Raises:
-        UserError: If an option is wrong, the folder holds a sweep with other settings, or the
-            scheduler cannot be used.
+        UserError: If an option is wrong, the folder holds a sweep with other settings or files of
+            somebody else's, or the scheduler cannot be used.
     """
     stages = study.stages()
     stage = next(stages)  # what is wrong with an option is told before anything is begun
@@ -53,6 +56,8 @@ def run_study(
     from fuzzyq_bullet.outputs import plugin_settings
 
     more = plugin_settings(plugins)
+    if not replace:
+        _refuse_others(study, out)
     names = [f"{study.name}.json", *([f"{study.name}.png"] if study.pictured else [])]
     results: dict[str, Swept] = {}
     with _pool(*where, plugins) as pool:
@@ -86,6 +91,29 @@ def run_study(
     for path in (text, *images):
         say(f"  {path}")
     _judge(findings, results[stage.name])
+
+
+def _refuse_others(study: Study, out: Path) -> None:
+    """Make sure that what is there under the names of a study's files is its own.
+
+    It is where settings lie beside it: a sweep of other settings is refused for those.
+
+    Raises:
+        UserError: If it is not.
+    """
+    from fuzzyq_bullet.studies.runner.storage import SETTINGS, Folder
+
+    folders = {name: out / study.folders.get(name, "") for name in study.stage_kinds()}
+    claimed = {name for name, folder in folders.items() if Folder(folder).is_claimed()}
+    files = [folder / f"{name}.csv" for name, folder in folders.items() if name not in claimed]
+    if not claimed:
+        files += [out / f"{study.name}.json", out / f"{study.name}.png"]
+    for file in files:
+        if os.path.lexists(file):
+            raise UserError(
+                f"{file}: is there already, and no {SETTINGS} tells of which sweep; "
+                "--replace replaces it, another --out keeps it"
+            )
 
 
 def _judge(findings: Findings, last: Swept) -> None:

@@ -14,6 +14,10 @@ Draw: TypeAlias = Callable[[Path], list[Path]]
 """Draws into a folder and returns the files written, the main one first."""
 
 
+MARK = "fuzzyq figure"
+"""Stands as ``Software`` in every file, so that one is known again."""
+
+
 class Entry(NamedTuple):
     """One line of the registry.
 

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from fuzzyq_bullet.experiments.figures import MARK
 from fuzzyq_bullet.files import writable_folder, written_beside
 from fuzzyq_bullet.fuzzy import FuzzyController, paper_controller
 
@@ -29,7 +30,7 @@ def draw(out: Path) -> list[Path]:
     path = writable_folder(out) / "figure4.png"
     figure = picture(paper_controller())
     with written_beside(path) as part:
-        figure.savefig(part, format="png")
+        figure.savefig(part, format="png", metadata={"Software": MARK})
     return [path]
 
 

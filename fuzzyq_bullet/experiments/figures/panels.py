@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from fuzzyq_bullet.episode import run
+from fuzzyq_bullet.experiments.figures import MARK
 from fuzzyq_bullet.experiments.figures.topdown import LEGEND, draw_run
 from fuzzyq_bullet.files import writable_folder, written_beside
 from fuzzyq_bullet.metrics import result_of
@@ -79,7 +80,8 @@ def draw_panels(out: Path, name: str, panels: Sequence[Panel], grid: Grid) -> li
     path = writable_folder(out) / f"{name}.png"
     figure = picture(panels, [run(scenario_of(panel)) for panel in panels], grid)
     with written_beside(path) as part:
-        figure.savefig(part, format="png", bbox_inches="tight", pad_inches=_GAP)
+        told = {"Software": MARK}
+        figure.savefig(part, format="png", bbox_inches="tight", pad_inches=_GAP, metadata=told)
     return [path]
 
 

@@ -8,6 +8,9 @@ from typing import TypeAlias
 
 Child: TypeAlias = "Html | str | None"
 
+MARK = "fuzzyq report"
+"""Stands as ``generator`` in every page, so that one is known again."""
+
 _VOID = frozenset({"br", "img", "link", "meta", "source"})
 
 

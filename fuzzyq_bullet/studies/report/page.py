@@ -10,7 +10,7 @@ from fuzzyq_bullet.studies.registry import study_names, study_of
 from fuzzyq_bullet.studies.report import sections
 from fuzzyq_bullet.studies.report.films import Film, Place
 from fuzzyq_bullet.studies.report.found import Found
-from fuzzyq_bullet.studies.report.markup import Html, join, tag
+from fuzzyq_bullet.studies.report.markup import MARK, Html, join, tag
 from fuzzyq_bullet.studies.report.sections import Section
 
 TITLE = "Planners among obstacles they have never seen"
@@ -81,7 +81,7 @@ def page(
         tag("meta", charset="utf-8"),
         tag("meta", http_equiv="Content-Security-Policy", content=_POLICY),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name="generator", content="fuzzyq report"),
+        tag("meta", name="generator", content=MARK),
         tag("title", f"{TITLE}: {folder}"),
         tag("link", rel="icon", href="data:,"),
         tag("style", Html(_css())),

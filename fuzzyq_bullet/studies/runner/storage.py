@@ -25,6 +25,8 @@ from fuzzyq_bullet.studies.runner.rows import Row
 
 MAX_SETTINGS = 10_000_000
 """Largest file of settings that is read (bytes)."""
+SETTINGS = "settings.json"
+"""The file that says what a folder's sweep is."""
 _ABSENT = "nothing"
 
 
@@ -41,7 +43,11 @@ class Folder:
         self.path = path
         self.journal = path / "journal.jsonl"
         self.records = path / "records"
-        self._settings = path / "settings.json"
+        self._settings = path / SETTINGS
+
+    def is_claimed(self) -> bool:
+        """Tell whether it is one of a sweep already, of whatever settings."""
+        return os.path.lexists(self._settings)
 
     def claim(self, settings: Mapping[str, Any]) -> None:
         """Make the folder one for a sweep of these settings, or make sure that it is.
@@ -92,7 +98,7 @@ class Folder:
             part.write_bytes(record)
 
     def _read(self) -> dict[str, Any] | None:
-        if not os.path.lexists(self._settings):
+        if not self.is_claimed():
             return None
         known = settings_in(self._settings)
         if known is None:
