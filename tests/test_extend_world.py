@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import inspect
 import json
+import textwrap
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import Call
 
-from fuzzyq_bullet import UserError, load_scenario
+from fuzzyq_bullet import UserError, load_scenario, register_planner
+from fuzzyq_bullet.robots import register_robot
+from fuzzyq_bullet.scenario import register_expectation
+from fuzzyq_bullet.scenario.importers import register_importer
+from fuzzyq_bullet.scenario.layouts import register_layout
+from fuzzyq_bullet.sensors import register_sensor
+from fuzzyq_bullet.shapes import register_motion, register_shape
+from fuzzyq_bullet.studies import register_study
 from fuzzyq_bullet.trajectory import Trajectory
+from fuzzyq_bullet.video import register_panel
 
 EXTEND = Path(__file__).parent.parent / "examples" / "extend"
 ROOM = """\
@@ -160,3 +170,32 @@ def test_a_scenario_file_is_imported_as_itself_and_never_replaced(
     assert load_scenario(tmp_path / "copy.yaml") == load_scenario(short)
     with pytest.raises(Exception, match="is an input of this command"):
         inside("import", short, "--out", short, "--replace")
+
+
+REGISTRIES = (
+    *(register_planner, register_robot, register_expectation, register_importer, register_layout),
+    *(register_sensor, register_motion, register_shape, register_study, register_panel),
+)
+
+
+def test_the_example_of_each_registry_can_be_copied(fuzzyq: Call, room: Path) -> None:
+    plugins: list[object] = []
+    for registry in REGISTRIES:
+        lines = inspect.getdoc(registry).split("\n")
+        first = next(i for i, line in enumerate(lines) if line.lstrip().startswith("from "))
+        indent = len(lines[first]) - len(lines[first].lstrip())
+        code = lines[first:]
+        last = next((i for i, line in enumerate(code) if line[:indent].strip()), len(code))
+        path = room.with_name(f"{registry.__name__}_example.py")
+        path.write_text(textwrap.dedent("\n".join(code[:last])))
+        plugins += ["--plugin", path]
+    room.write_text(
+        ROOM.replace("[3.0, 2.0]", "[8.0, 4.0]")
+        + "random: {layout: row, count: 3}\n"
+        + "robot: {model: mouse}\n"
+        + "sensor: {model: rounded, step: 0.1}\n"
+        + "planner: {name: my-planner, speed: 0.4}\n"
+        + "expect: {max_turning: 20}\n"
+    )
+    done = fuzzyq("validate", room, *plugins)
+    assert done.returncode == 0, done.stderr

@@ -84,6 +84,7 @@ def train(
             curve = _learn(config, tasks, files, progress, resume=resume)
     except Stopped:
         where = [] if out is None else ["--out", out]
+        where += [word for name in plugin or [] for word in ("--plugin", name)]
         again = f"{config.command} {shlex.join([*where, '--resume'])}"
         kept = episodes_kept(files.checkpoint)
         say(f"{kept} of {config.episodes} episodes are kept; to go on: {again}")

@@ -50,6 +50,10 @@ def register_planner(
     Example:
         In a file that ``--plugin`` names (``examples/extend/planner.py`` is a whole one)::
 
+            from typing import Literal
+
+            from fuzzyq_bullet import Decision, Observation, PlannerSettings, register_planner
+
             class MySettings(PlannerSettings):
                 name: Literal["my-planner"] = "my-planner"
                 speed: float = 0.5  # a key of the scenario file: planner: {name: my-planner, ...}
@@ -63,6 +67,8 @@ def register_planner(
                     return Decision(heading=observation.heading, step=min(self.step, free))
 
             register_planner("my-planner", MySettings, lambda settings, rng: MyPlanner(settings))
+
+        A planner of the package itself is a module here, and a call in ``planning/__init__.py``.
     """
     if not _NAME.fullmatch(name):
         raise ValueError(

@@ -161,7 +161,11 @@ def register_robot(robot: RobotModel) -> RobotModel:
 
     One call in a file that ``--plugin`` names is enough::
 
+        from fuzzyq_bullet.robots import RobotModel, register_robot
+
         register_robot(RobotModel(name="mouse", radius=0.08, track=0.12, wheel_radius=0.02))
+
+    A robot of the package itself is a module here that ``robots/__init__.py`` imports.
 
     What is not given is that of the default robot. Physics, sensor, planner, shortest path, layouts
     and film take its radius from here.

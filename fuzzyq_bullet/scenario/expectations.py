@@ -83,7 +83,10 @@ def register_expectation(
 
     What is decorated takes the ``Result`` of a run and returns the figure to compare. A figure that
     is ``None`` or not a number meets nothing. The first line of its docstring goes into the JSON
-    Schema. ::
+    Schema. In a file of one's own::
+
+        from fuzzyq_bullet import Result
+        from fuzzyq_bullet.scenario import register_expectation
 
         @register_expectation("max_turning", sense="at most", said="turned {} rad", unit="rad")
         def turning(result: Result) -> float:
@@ -101,7 +104,8 @@ def register_expectation(
         unit: Unit of both.
         digits: Decimals of the figure in messages.
         missing: What is said where the run has no such figure.
-        limit: Type of the value in the scenario file, as pydantic takes it; by default any number.
+        limit: Type of the value in the scenario file, as pydantic takes it; by default any finite
+            number, written as ``20`` or ``20.0``.
 
     Raises:
         ValueError: If the name is taken, or can be no key.

@@ -70,6 +70,11 @@ def register_sensor(sensor: _M) -> _M:
 
     As a decorator, in a file that ``--plugin FILE`` names::
 
+        from typing import Literal
+
+        import numpy as np
+        from fuzzyq_bullet.sensors import SensorModel, register_sensor
+
         @register_sensor
         class Rounded(SensorModel):
             model: Literal["rounded"] = "rounded"
@@ -78,7 +83,9 @@ def register_sensor(sensor: _M) -> _M:
             def measure(self, lengths, rng):
                 return np.floor(lengths / self.step) * self.step
 
-    A scenario file then has ``sensor: {model: rounded, step: 0.1}``.
+    A scenario file then has ``sensor: {model: rounded, step: 0.1}``. Noise is a sensor too: it
+    draws from ``rng``. A sensor of the package itself is a module here that
+    ``sensors/__init__.py`` imports.
 
     Raises:
         ValueError: If it has no name, or the name is taken.

@@ -168,7 +168,13 @@ def register_shape(shape: _S) -> _S:
     """Make a shape known to scenario files: a decorator for subclasses of ``Shape``.
 
     The subclass narrows ``shape`` to its own name. From then on obstacles of that shape are
-    validated, simulated, sensed, drawn and measured like all others::
+    validated, simulated, sensed, drawn and measured like all others. In a file that ``--plugin``
+    names::
+
+        from typing import Literal
+
+        from fuzzyq_bullet.quantities import Length
+        from fuzzyq_bullet.shapes import ConvexShape, register_shape
 
         @register_shape
         class Prism(ConvexShape):
@@ -176,7 +182,9 @@ def register_shape(shape: _S) -> _S:
             radius: Length
 
             def polygon(self):
-                return [(self.position[0] + ..., ...), ...]
+                return [(self.position[0] + ..., ...), ...]  # corners, anticlockwise
+
+    A shape of the package itself is a module here that ``shapes/__init__.py`` imports.
 
     Raises:
         ValueError: If the name is taken.

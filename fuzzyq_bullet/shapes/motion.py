@@ -42,6 +42,23 @@ _M = TypeVar("_M", bound=type[Motion])
 def register_motion(motion: _M) -> _M:
     """Make a motion known to scenario files: a decorator for subclasses of ``Motion``.
 
+    In a file that ``--plugin`` names::
+
+        from typing import Literal
+
+        from fuzzyq_bullet.quantities import Length
+        from fuzzyq_bullet.shapes import Motion, Pose, register_motion
+
+        @register_motion
+        class Slide(Motion):
+            kind: Literal["slide"]
+            speed: Length  # m/s
+
+            def pose(self, time):
+                return Pose(self.speed * time, 0.0, 0.0)
+
+    An obstacle then has ``motion: {kind: slide, speed: 0.1}``.
+
     The physics cannot move obstacles yet: ``scenario.checks`` accepts only motions whose pose is
     the same at all times.
 

@@ -28,6 +28,12 @@ def register_study(study: _S) -> _S:
 
     In a file of one's own that ``--plugin`` loads::
 
+        from pydantic import Field
+
+        from fuzzyq_bullet.studies import (
+            FieldsPlan, Findings, Study, Table, described, planners_of, register_study
+        )
+
         @register_study
         class Sparse(Study):
             \"\"\"Ask two planners for their way through sparse fields.\"\"\"
@@ -46,6 +52,8 @@ def register_study(study: _S) -> _S:
                 rows = results[self.name].rows
                 cells = [[row.planner, row.outcome] for row in rows]
                 return Findings((Table("How runs ended.", ("planner", "outcome"), cells),), {})
+
+    A study of the package itself is a folder here, and a line in ``_BUNDLED``.
 
     Raises:
         ValueError: If its name is taken, or cannot be one.

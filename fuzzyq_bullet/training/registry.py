@@ -69,7 +69,24 @@ def register_recipe(recipe: Recipe) -> None:
     """Make known how a planner learns, so that ``fuzzyq train`` can train it.
 
     The planner itself is registered by ``planning.register_planner``; its settings are a
-    ``PolicySettings``, so that a scenario can name the policy that was learned.
+    ``PolicySettings``, so that a scenario can name the policy that was learned. In a file that
+    ``--plugin`` names (``examples/extend/policy.py`` is a whole one)::
+
+        from fuzzyq_bullet.learning import PolicySpec, QLambda, Setup
+        from fuzzyq_bullet.training.registry import Recipe, register_recipe
+
+        spec = PolicySpec("my-planner", STATE_NAMES, ACTION_NAMES, "q-lambda")
+        register_recipe(
+            Recipe(
+                planner="my-planner",
+                spec=spec,
+                problem=MyProblem,  # called with the Tasks; reset, step, outcome: learning.Problem
+                learner=lambda: QLambda(*spec.shape),
+                setup=lambda episodes, seed: Setup(episodes, seed),
+            )
+        )
+
+    What the package is to ship is one more line in ``training.config.SHIPPED``.
 
     Raises:
         ValueError: If it is known already how that planner learns.

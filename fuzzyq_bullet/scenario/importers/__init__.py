@@ -29,13 +29,23 @@ def register_importer(*suffixes: str) -> Callable[[Importer], Importer]:
     """Make an importer known: a decorator for a function from a path to a scenario.
 
     The function reads the file and returns a ``Scenario`` (metres, radians, the arena's lower left
-    corner the origin; start and goal are its choice where the map has none). It
-    raises ``UserError`` for a file that is wrong: one line with file, line and what is allowed::
+    corner the origin; start and goal are its choice where the map has none). It raises
+    ``UserError`` for a file that is wrong: one line with file, line and what is allowed. In a file
+    that ``--plugin`` names::
+
+        from pathlib import Path
+
+        import numpy as np
+        from fuzzyq_bullet import Scenario
+        from fuzzyq_bullet.scenario.importers import register_importer
 
         @register_importer(".csv")
         def circles(path: Path) -> Scenario:
             rows = np.loadtxt(path, delimiter=",")
             return Scenario(name=path.stem, obstacles=..., start=..., goal=...)
+
+    Then ``fuzzyq import forest.csv --plugin FILE`` writes ``forest.yaml``. An importer of the
+    package itself is a module here that ``scenario/importers/__init__.py`` imports.
 
     Args:
         suffixes: What the files end with, such as ``.csv``; small letters.

@@ -48,7 +48,15 @@ def register_layout(layout: _L) -> _L:
     """Make a layout known to scenario files: a decorator for subclasses of ``Layout``.
 
     The subclass narrows ``layout`` to its own name, has its parameters as fields, and implements
-    ``draw``; ``scenario.layouts.placing`` tells whether what is drawn may stay::
+    ``draw``; ``scenario.layouts.placing`` tells whether what is drawn may stay. In a file that
+    ``--plugin`` names::
+
+        from typing import Literal
+
+        from fuzzyq_bullet.quantities import Count
+        from fuzzyq_bullet.scenario.layouts import Layout, register_layout
+        from fuzzyq_bullet.scenario.layouts.placing import is_clear
+        from fuzzyq_bullet.shapes import Cylinder
 
         @register_layout
         class Row(Layout):
@@ -56,7 +64,13 @@ def register_layout(layout: _L) -> _L:
             count: Count
 
             def draw(self, scenario, rng):
-                return tuple(Cylinder(shape="cylinder", ...) for k in range(self.count))
+                x, depth = scenario.arena.size[0] / 2, scenario.arena.size[1]
+                ys = rng.uniform(0.0, depth, self.count).round(4).tolist()
+                drawn = [Cylinder(shape="cylinder", position=(x, y), radius=0.2) for y in ys]
+                return tuple(one for one in drawn if is_clear(scenario, [one], 0.1))
+
+    A scenario file then has ``random: {layout: row, count: 4}``. A layout of the package itself is
+    a module here that ``scenario/layouts/__init__.py`` imports.
 
     Raises:
         ValueError: If the name is taken.

@@ -137,6 +137,9 @@ def register_panel(
     of the decision in force, -1 before the first) and ``shown`` (the decision that all panels
     explain, which is held long enough to be read). ::
 
+        from fuzzyq_bullet import Trajectory
+        from fuzzyq_bullet.video import Canvas, Moment, register_panel
+
         @register_panel("speed", title="SPEED")
         class Speed:
             def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
@@ -148,7 +151,8 @@ def register_panel(
 
     ``fuzzyq run SCENARIO --plugin FILE`` loads it from a file of one's own. Its card lies in a row
     of its own below the others: the film becomes taller, nothing is covered. Up to four share a
-    row, so a panel asks its canvas for the size.
+    row, so a panel asks its canvas for the size. A panel of the package itself is a module here
+    that ``video/panels/__init__.py`` imports.
 
     Args:
         name: What it is called in messages.
