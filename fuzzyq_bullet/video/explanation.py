@@ -100,7 +100,7 @@ def _lean(trajectory: Trajectory, index: int) -> float:
 
 
 def _goes_on(trajectory: Trajectory, index: int) -> str:
-    """Return where the robot goes that is on its way from exit to exit."""
+    """Return where the robot goes that is on its way from frontier to frontier."""
     decisions = trajectory.decisions
     if float(decisions.reach[index]) <= 0.0:
         if float(trajectory.ticks.speed[int(decisions.tick[index])]) > _SLOW:
