@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field, ValidationError
 
-from fuzzyq_bullet.archive import read_arrays
 from fuzzyq_bullet.columns import FAR, Column, check_arrays, columns_of, csv_of, documented
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
@@ -25,6 +24,7 @@ from fuzzyq_bullet.geometry import Field as Obstacles
 from fuzzyq_bullet.planning.decision import FIELDS, Decision
 from fuzzyq_bullet.scenario.models import ANY_NAME, Scenario
 from fuzzyq_bullet.scenario.problems import unknown_names
+from fuzzyq_bullet.untrusted import read_arrays
 from fuzzyq_bullet.version import __version__
 
 Floats: TypeAlias = NDArray[np.float64]

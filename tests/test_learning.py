@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from toys import CliffWalk, Corridor, RandomWalk
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import (
@@ -26,7 +27,6 @@ from fuzzyq_bullet.learning import (
     train,
 )
 from fuzzyq_bullet.learning.tabular import FAINT, TraceKind
-from fuzzyq_bullet.learning.toys import CliffWalk, Corridor, RandomWalk
 
 STATES, ACTIONS = 5, 3
 KINDS = st.sampled_from(["accumulating", "replacing"])

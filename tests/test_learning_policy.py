@@ -13,11 +13,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
+from toys import Corridor
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, PolicySpec, QLambda, Setup, load_policy, train
 from fuzzyq_bullet.learning.policy import MAX_BYTES
-from fuzzyq_bullet.learning.toys import Corridor
 from fuzzyq_bullet.version import __version__
 
 STATES = tuple(f"place {i}" for i in range(4))

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from toys import CliffWalk, Corridor, RandomWalk
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import (
@@ -29,7 +30,6 @@ from fuzzyq_bullet.learning import (
     train,
 )
 from fuzzyq_bullet.learning.checkpoint import Checkpoint, Curve
-from fuzzyq_bullet.learning.toys import CliffWalk, Corridor, RandomWalk
 
 SETUP = Setup(
     30, seed=7, rate=Schedule(0.3), trace_decay=Schedule(0.8), max_steps=60, random_ties=True

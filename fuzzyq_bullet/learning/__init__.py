@@ -2,7 +2,6 @@
 
 from fuzzyq_bullet.learning.linear import Features, LinearQLambda
 from fuzzyq_bullet.learning.policy import Policy, PolicySpec, load_policy
-from fuzzyq_bullet.learning.problem import Learner, Problem
 from fuzzyq_bullet.learning.schedules import (
     EXPLORATION,
     LEARNING_RATE,
@@ -11,7 +10,15 @@ from fuzzyq_bullet.learning.schedules import (
     Schedule,
 )
 from fuzzyq_bullet.learning.tabular import QLambda, QLearning
-from fuzzyq_bullet.learning.training import Setup, episode_rng, epsilon_greedy, greedy, train
+from fuzzyq_bullet.learning.training import (
+    Learner,
+    Problem,
+    Setup,
+    episode_rng,
+    epsilon_greedy,
+    greedy,
+    train,
+)
 
 __all__ = [
     "EXPLORATION",

@@ -16,10 +16,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.archive import read_arrays
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.learning.tabular import Floats
+from fuzzyq_bullet.untrusted import read_arrays
 
 Plain: TypeAlias = "str | int | float | bool"
 Curve: TypeAlias = NDArray[np.void]

@@ -25,7 +25,7 @@ from pydantic import (
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.learning.checkpoint import LARGEST
-from fuzzyq_bullet.learning.plain_json import read_object, shown
+from fuzzyq_bullet.untrusted import read_object, shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
