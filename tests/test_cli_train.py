@@ -28,9 +28,8 @@ from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve, last_mean
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.resources import asset
 from fuzzyq_bullet.scenario import dump_scenario, parse_scenario
-from fuzzyq_bullet.training.config import SHIPPED, TrainingConfig
 from fuzzyq_bullet.training.registry import RECIPES
-from fuzzyq_bullet.training.session import TrainingProgress
+from fuzzyq_bullet.training.session import SHIPPED, TrainingConfig, TrainingProgress
 
 PLANNER = "fuzzy-q-lambda"
 EPISODES = 12
@@ -437,7 +436,7 @@ def test_every_shipped_policy_has_a_command_and_every_command_a_planner_that_lea
 
 
 def test_make_reads_the_commands_from_where_they_are(capsys: pytest.CaptureFixture[str]) -> None:
-    runpy.run_path(sys.modules["fuzzyq_bullet.training.config"].__file__ or "", None, "__main__")
+    runpy.run_path(sys.modules["fuzzyq_bullet.training.session"].__file__ or "", None, "__main__")
     assert capsys.readouterr().out.splitlines() == [config.command for config in SHIPPED.values()]
 
 

@@ -33,8 +33,8 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import (
 )
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.scenario import Scenario, Start, load_scenario, random_task, realise
-from fuzzyq_bullet.training.distance_field import DistanceField
 from fuzzyq_bullet.training.problems import WeightsProblem
+from fuzzyq_bullet.training.rewards import DistanceField
 from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM, TRIES, Tasks
 
 if TYPE_CHECKING:

@@ -32,8 +32,7 @@ from fuzzyq_bullet.planning.q_learning import (
     state_of,
 )
 from fuzzyq_bullet.scenario import Scenario, parse_scenario
-from fuzzyq_bullet.training.episode import PATIENCE, TrainingEpisode
-from fuzzyq_bullet.training.problems import DirectProblem
+from fuzzyq_bullet.training.problems import PATIENCE, DirectProblem, TrainingEpisode
 from fuzzyq_bullet.training.registry import learn, recipe_of
 from fuzzyq_bullet.training.rewards import HIT
 from fuzzyq_bullet.training.tasks import Tasks

@@ -14,8 +14,7 @@ from fuzzyq_bullet.errors import Stopped, UserError
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.learning.checkpoint import Curve
-    from fuzzyq_bullet.training.config import TrainingConfig
-    from fuzzyq_bullet.training.session import TrainingFiles, TrainingProgress
+    from fuzzyq_bullet.training.session import TrainingConfig, TrainingFiles, TrainingProgress
     from fuzzyq_bullet.training.tasks import Tasks
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import gymnasium
 import numpy as np
@@ -14,19 +14,24 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.gym.picture import picture
-from fuzzyq_bullet.gym.spaces import Vector, box_of, vector_of
 from fuzzyq_bullet.gym.tasks import TaskSource
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.training.rewards import Reward
+from fuzzyq_bullet.trajectory import Trajectory
+from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.timeline import Timeline, sensed_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fuzzyq_bullet.planning import Decision
-    from fuzzyq_bullet.scenario import Scenario
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.planning import Decision, Observation
+    from fuzzyq_bullet.scenario import Robot, Scenario
+
+Vector: TypeAlias = NDArray[np.float32]
+
+HALFWAY = 5.0
+"""Distance (m) that is told as a half."""
 
 
 class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
@@ -51,7 +56,8 @@ class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         if render_mode not in (None, "rgb_array"):
             raise UserError(f"render_mode: must be rgb_array or None, got {render_mode!r}")
         self.render_mode = render_mode
-        self.observation_space = box_of(sees)
+        least = np.array(list(sees.values()), dtype=np.float32)
+        self.observation_space = Box(least, np.ones_like(least))
         self.action_space = Box(-1.0, 1.0, (2,))
         self._tasks = tasks
         self._sees = sees
@@ -153,7 +159,10 @@ class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         return self._episode
 
     def _observed(self) -> Vector:
-        return vector_of(self._see(self._running()), self._sees)
+        seen = self._see(self._running())
+        values = [seen[name] for name in self._sees]
+        # A wheel that swings past its speed by a thousandth must not leave the space.
+        return np.clip(values, list(self._sees.values()), 1.0).astype(np.float32)
 
     @abstractmethod
     def _begin(self, scenario: Scenario) -> None:
@@ -170,3 +179,37 @@ class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     @abstractmethod
     def _shown(self) -> Decision:
         """Return what a picture shows of this instant."""
+
+
+def goal_seen(observation: Observation) -> dict[str, float]:
+    """Return where the goal is as the robot faces, and how far away.
+
+    The distance d is told as d / (d + ``HALFWAY``): below 1 however large the arena, and finest
+    where the robot must stop.
+    """
+    x, y = np.subtract(observation.goal, observation.position).tolist()
+    aside = math.atan2(y, x) - observation.heading
+    distance = math.hypot(x, y)
+    return {
+        "goal_ahead": math.cos(aside),
+        "goal_left": math.sin(aside),
+        "goal_distance": distance / (distance + HALFWAY),
+    }
+
+
+def motion_seen(observation: Observation, robot: Robot) -> dict[str, float]:
+    """Return how fast the robot moves, as parts of the greatest speed and turn rate."""
+    return {
+        "speed": observation.speed / robot.max_speed,
+        "turn_rate": observation.turn_rate / robot.max_turn_rate,
+    }
+
+
+def picture(trajectory: Trajectory) -> NDArray[np.uint8]:
+    """Return the map at the end of a trajectory, RGB, shape (384, 372, 3)."""
+    timeline = Timeline(trajectory)
+    moment = timeline.at(timeline.end)
+    hit = None if trajectory.collision is None else trajectory.collision.point
+    patch = Map(trajectory).draw(moment, sensed_at(trajectory, moment.decision), hit)
+    assert patch is not None  # a new map is drawn whole
+    return np.array(patch.image)

@@ -6,8 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.drives.velocity_controller import Twist
-from fuzzyq_bullet.gym.env import EpisodeEnv
-from fuzzyq_bullet.gym.spaces import goal_seen, motion_seen
+from fuzzyq_bullet.gym.env import EpisodeEnv, goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
 from fuzzyq_bullet.planning import Decision
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.gym.env import EpisodeEnv
-from fuzzyq_bullet.gym.spaces import goal_seen, motion_seen
+from fuzzyq_bullet.gym.env import EpisodeEnv, goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
 from fuzzyq_bullet.planning import MODES, Decision
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE

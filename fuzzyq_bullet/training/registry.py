@@ -86,7 +86,7 @@ def register_recipe(recipe: Recipe) -> None:
             )
         )
 
-    What the package is to ship is one more line in ``training.config.SHIPPED``.
+    What the package is to ship is one more line in ``training.session.SHIPPED``.
 
     Raises:
         ValueError: If it is known already how that planner learns.

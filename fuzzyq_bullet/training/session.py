@@ -1,7 +1,11 @@
-"""One training as a user asks for it: on what, what is there already, what it came to."""
+"""One training as a user asks for it: on what, what is there already, what it came to.
+
+As a program it prints, for ``make policies``, the commands that make the shipped policies.
+"""
 
 from __future__ import annotations
 
+import shlex
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -16,13 +20,54 @@ from fuzzyq_bullet.learning.training import MAX_EPISODES
 from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import load_scenario, realise
 from fuzzyq_bullet.scenario.models import Drive
-from fuzzyq_bullet.training.config import TrainingConfig
 from fuzzyq_bullet.training.registry import RECIPES, learn, recipe_of
 from fuzzyq_bullet.training.tasks import MOST_SEED, Tasks
 from fuzzyq_bullet.version import __version__
 from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
 
 FOLDER = Path("out/train")
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingConfig:
+    """Everything that the result of a training depends on, except the version.
+
+    Attributes:
+        planner: Name of the planner that learns.
+        episodes: Number of episodes.
+        drive: What moves the robot.
+        seed: Seed of all random numbers.
+        scenario: Path or name of the scenario to learn on; None for random scenarios.
+    """
+
+    planner: str
+    episodes: int = 200
+    drive: Drive = "kinematic"
+    seed: int = 0
+    scenario: str | None = None
+
+    @property
+    def command(self) -> str:
+        """The command that does it, with every option written out.
+
+        The output path is not in it: the same training gives the same file everywhere.
+        """
+        parts = ["fuzzyq", "train", self.planner, "--episodes", str(self.episodes)]
+        parts += ["--drive", self.drive, "--seed", str(self.seed)]
+        if self.scenario is not None:
+            parts += ["--scenario", self.scenario]
+        return shlex.join(parts)
+
+
+SHIPPED = {
+    config.planner: config
+    for config in (
+        TrainingConfig("q-learning", episodes=200, drive="kinematic", seed=0),
+        TrainingConfig("q-lambda", episodes=200, drive="kinematic", seed=0),
+        TrainingConfig("fuzzy-q-lambda", episodes=1500, drive="wheels", seed=1),
+    )
+}
+"""How each policy in ``assets/policies`` is made, by planner."""
 
 
 @dataclass(frozen=True)
@@ -258,3 +303,8 @@ def summary_of(
         "picture": str(files.picture),
         "checkpoint": str(files.checkpoint),
     }
+
+
+if __name__ == "__main__":
+    for shipped in SHIPPED.values():
+        print(shipped.command)
