@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.checks.inline import ScenarioRun
+    from fuzzyq_bullet.checks.run_job import ScenarioRun
     from fuzzyq_bullet.workers import WorkerPool
 
 ENDINGS = (".scenario.yaml", ".scenario.yml")
@@ -96,7 +96,7 @@ def run_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioRun]:
     A path is looked for beside the test first. What comes back has ``passed``, ``explanation``,
     ``result`` and ``trajectory``.
     """
-    from fuzzyq_bullet.checks import inline
+    from fuzzyq_bullet.checks import run_job
     from fuzzyq_bullet.plugins import load_plugins
 
     load_plugins(_plugins(request.config))
@@ -105,7 +105,7 @@ def run_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioRun]:
         beside = request.path.parent / source
         again = _command(f"{_from_here(request.path)}::{_within(request.node.nodeid)}")
         file = _from_here(beside) if beside.is_file() else source
-        return inline.run_scenario(file, again=again, **options)
+        return run_job.run_scenario(file, again=again, **options)
 
     return run
 
@@ -129,10 +129,9 @@ class ScenarioItem(pytest.Item):
         Raises:
             ScenarioFailedError: If it did not do what it expects, or could not be run.
         """
-        from fuzzyq_bullet.checks.jobs import check_all
         from fuzzyq_bullet.checks.plan import refuse_dead_link
-        from fuzzyq_bullet.checks.text import explanation
-        from fuzzyq_bullet.checks.verdict import Job
+        from fuzzyq_bullet.checks.session import check_all
+        from fuzzyq_bullet.checks.verdict import Job, explanation
         from fuzzyq_bullet.errors import UserError
 
         file = _from_here(self.path)

@@ -18,9 +18,9 @@ from conftest import Call
 from lxml import etree
 
 from fuzzyq_bullet.checks.baseline import BaselineRun, compare, this_platform
-from fuzzyq_bullet.checks.jobs import check_all
 from fuzzyq_bullet.checks.plan import discover
 from fuzzyq_bullet.checks.reports import junit_xml
+from fuzzyq_bullet.checks.session import check_all
 from fuzzyq_bullet.checks.verdict import Job, Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.resources import data_folder

@@ -13,7 +13,7 @@ from PIL import Image
 from test_unchanged import SAME_SINES, known, told
 
 from fuzzyq_bullet import load_scenario, result_of, run, with_options
-from fuzzyq_bullet.cli.figure import figure
+from fuzzyq_bullet.cli.report import figure
 from fuzzyq_bullet.experiments.figures import FIGURES, MARK, panels
 from fuzzyq_bullet.experiments.figures.panels import Grid, Panel, picture, scenario_of
 from fuzzyq_bullet.experiments.figures.runs import FIGURES as RUNS

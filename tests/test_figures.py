@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from fuzzyq_bullet.cli.figure import figure
+from fuzzyq_bullet.cli.report import figure
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.experiments.figures import FIGURES, drawing
 from fuzzyq_bullet.experiments.figures.figure4 import picture, surfaces

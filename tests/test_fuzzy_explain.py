@@ -134,7 +134,7 @@ def test_too_few_samples_are_refused() -> None:
 
 def test_explaining_loads_neither_the_physics_nor_the_pictures() -> None:
     code = (
-        "import sys, fuzzyq_bullet.cli.explain, fuzzyq_bullet.cli.figure\n"
+        "import sys, fuzzyq_bullet.cli.explain, fuzzyq_bullet.cli.report\n"
         "print([name for name in ('pybullet', 'matplotlib', 'fuzzylite') if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

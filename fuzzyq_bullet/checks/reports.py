@@ -11,8 +11,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from xml.etree import ElementTree
 
-from fuzzyq_bullet.checks.text import explanation, lines_of
-from fuzzyq_bullet.checks.verdict import Verdict
+from fuzzyq_bullet.checks.verdict import Verdict, counts_of, explanation, lines_of
 from fuzzyq_bullet.version import __version__
 
 _PLACE = re.compile(r"(?P<file>[^:\n]+\.ya?ml)(:(?P<line>\d+))?: ")
@@ -28,12 +27,9 @@ def as_json(verdicts: Sequence[Verdict], problems: Sequence[str], seconds: float
         problems: What is wrong with the input besides.
         seconds: Wall-clock time of it all (s).
     """
-    count = dict.fromkeys(("passed", "failed", "broken", "invalid"), 0)
-    for verdict in verdicts:
-        count[verdict.status] += 1
     told = {
         "version": __version__,
-        **count,
+        **counts_of(verdicts),
         "problems": list(problems),
         "seconds": round(seconds, 3),
         "scenarios": [verdict.model_dump(mode="json") for verdict in verdicts],

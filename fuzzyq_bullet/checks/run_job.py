@@ -1,21 +1,33 @@
-"""One job done in this process: the scenario driven, held to what it expects, a miss explained."""
+"""One scenario run in this process: driven, held to what it expects, a miss explained.
+
+``run_job`` is for workers, whatever goes wrong; ``run_scenario`` for a test that somebody wrote.
+"""
 
 from __future__ import annotations
 
 import math
+import os
 import traceback
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.checks.verdict import FilmJob, Job, Touch, Verdict
+from fuzzyq_bullet.checks.verdict import Job, Touch, Verdict, explanation, replay_command
 from fuzzyq_bullet.collision_text import name_of, plain, touch_in_words
 from fuzzyq_bullet.early_warnings import NO_WAY, early_warnings
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import Result, has_way, result_of
-from fuzzyq_bullet.scenario import Scenario, load_scenario, realise, with_options
+from fuzzyq_bullet.planning.registry import settings_for
+from fuzzyq_bullet.scenario import (
+    Scenario,
+    find_scenario,
+    load_scenario,
+    realise,
+    with_options,
+)
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
 from fuzzyq_bullet.wording import error_in_words
@@ -55,6 +67,62 @@ def run_job(job: Job) -> Verdict:
     return verdict
 
 
+@dataclass(frozen=True)
+class ScenarioRun:
+    """What came of a scenario that a test ran.
+
+    Attributes:
+        trajectory: The record of the run.
+        result: Its figures.
+        verdict: What ``fuzzyq check`` would say.
+    """
+
+    trajectory: Trajectory
+    result: Result
+    verdict: Verdict
+
+    @property
+    def passed(self) -> bool:
+        """Whether the run did what the scenario expects."""
+        return self.verdict.status == "passed"
+
+    @property
+    def explanation(self) -> str:
+        """Why not: when, where, at which obstacle, and how to see it again."""
+        return explanation(self.verdict)
+
+
+def run_scenario(
+    source: str | os.PathLike[str],
+    *,
+    planner: str | None = None,
+    seed: int | None = None,
+    drive: str | None = None,
+    again: str = "",
+) -> ScenarioRun:
+    """Run a scenario in this process, where whatever a test put in place is seen.
+
+    Args:
+        source: A file, or the name of a bundled scenario.
+        planner: Planner to use instead of the scenario's own.
+        seed: Seed to use instead.
+        drive: ``wheels`` or ``kinematic``, instead.
+        again: The command that runs the test again, which alone knows a planner of its own.
+
+    Raises:
+        UserError: If it cannot be run.
+    """
+    file = find_scenario(source)
+    scenario = load_scenario(file, policies=planner is None)
+    trajectory = _run(with_options(scenario, planner=planner, seed=seed, drive=drive))
+    result = result_of(trajectory)
+    job = Job(file=str(file), name=scenario.name, planner=planner, seed=seed, drive=drive)
+    own = not settings_for(result.planner).__module__.startswith("fuzzyq_bullet.")
+    command = again if own and again else replay_command(job)
+    asked = Verdict(name=job.name, file=job.file, status="passed", replay=command)
+    return ScenarioRun(trajectory, result, judge(trajectory, result, asked))
+
+
 def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
     """Return the verdict with what the run came to, and why it was not what was expected."""
     expect = trajectory.scenario.expect
@@ -77,18 +145,6 @@ def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
     line = touch.line if touch is not None else source.line_of("expect", "goal", "name")
     told = {"status": "failed", "why": why, "touch": touch, "line": line}
     return verdict.model_copy(update={**update, **told})
-
-
-def make_film(job: FilmJob) -> None:
-    """Make a film from a kept trajectory.
-
-    Raises:
-        UserError: If the record cannot be read, or the film not written.
-    """
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video import record
-
-    record(Trajectory.load(Path(job.record)), Path(job.video))
 
 
 def _run(scenario: Scenario) -> Trajectory:

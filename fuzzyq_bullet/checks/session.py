@@ -1,4 +1,8 @@
-"""A check from its first verdict to its last film: told in order, compared, records put away."""
+"""A check from its first verdict to its last film, over worker processes.
+
+Verdicts are told in order and compared, records put away. What comes back of a job is a verdict,
+whatever happens.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +10,10 @@ import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from fuzzyq_bullet.checks.jobs import film_all
-from fuzzyq_bullet.checks.verdict import FilmJob, Keep, Verdict
+from fuzzyq_bullet.checks.run_job import run_job
+from fuzzyq_bullet.checks.verdict import Job, Keep, Verdict, check_command, replay_command
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.outputs import refuse_other_run
@@ -18,6 +22,43 @@ from fuzzyq_bullet.trajectory import Trajectory
 if TYPE_CHECKING:
     from fuzzyq_bullet.checks.baseline import Baselines
     from fuzzyq_bullet.workers import WorkerPool
+
+FILM_TIMEOUT = 900.0
+"""Wall-clock time (s) that one film may take."""
+
+
+def check_all(pool: WorkerPool, jobs: Sequence[Job]) -> Iterator[tuple[int, Verdict]]:
+    """Do jobs; yield the index of each and its verdict as it is finished, in any order.
+
+    Raises:
+        UserError: If no worker can be started, for a plugin that does not load.
+    """
+    orders = [job.model_dump() for job in jobs]
+    for i, answer in pool.run(_check, orders, writes=[job.record for job in jobs]):
+        job = jobs[i]
+        if answer.value is not None:
+            verdict = Verdict.model_validate(answer.value)
+        else:
+            hint = ": it hangs, or needs a longer --timeout" if answer.late else ""
+            verdict = _broken(job, (answer.died or "; ".join(answer.failed)) + hint)
+        verdict.seconds = round(answer.seconds, 3)
+        verdict.replay = job.again or _command(job, verdict, pool)
+        yield i, verdict
+
+
+def _check(order: dict[str, Any]) -> dict[str, Any]:
+    return run_job(Job.model_validate(order)).model_dump(mode="json")
+
+
+def _command(job: Job, verdict: Verdict, pool: WorkerPool) -> str:
+    if verdict.result is not None:
+        return replay_command(job, pool.plugins)
+    return check_command(job, pool.plugins, timeout=pool.timeout, memory_mb=pool.memory_mb)
+
+
+def _broken(job: Job, why: str) -> Verdict:
+    no_film = "" if job.record is None else "its process ended with all that it had recorded"
+    return Verdict(name=job.name, file=job.file, status="broken", why=[why], no_film=no_film)
 
 
 @dataclass(frozen=True)
@@ -90,12 +131,21 @@ def make_films(pool: WorkerPool, verdicts: Sequence[Verdict]) -> Iterator[str]:
     A film that fails changes no verdict.
     """
     kept = [verdict for verdict in verdicts if verdict.record]
-    records = [str(verdict.record) for verdict in kept]
-    films = [FilmJob(record=one, video=str(Path(one).with_suffix(".mp4"))) for one in records]
-    for i, why in film_all(pool, films):
+    films = [str(Path(str(verdict.record)).with_suffix(".mp4")) for verdict in kept]
+    orders = [[verdict.record, film] for verdict, film in zip(kept, films, strict=True)]
+    for i, answer in pool.run(_film, orders, timeout=FILM_TIMEOUT, writes=films):
+        why = answer.died or "\n".join(answer.failed)
         if why:
             kept[i].no_film = why
-            yield f"no film {films[i].video}: {why}"
+            yield f"no film {films[i]}: {why}"
         else:
-            kept[i].video = films[i].video
-            yield f"film {films[i].video}"
+            kept[i].video = films[i]
+            yield f"film {films[i]}"
+
+
+def _film(order: list[str]) -> None:
+    """Make a film from a kept trajectory, in a worker."""
+    from fuzzyq_bullet.video import record
+
+    trajectory, film = map(Path, order)
+    record(Trajectory.load(trajectory), film)

@@ -11,8 +11,6 @@ from fuzzyq_bullet.cli import (
     bench,
     check,
     explain,
-    figure,
-    import_map,
     report,
     run,
     scenarios,
@@ -44,13 +42,13 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 _add("run", run.run)
 _add("replay", run.replay)
 _add("check", check.check)
-_add("import", import_map.import_map)
+_add("import", scenarios.import_map)
 _add("validate", scenarios.validate)
 _add("schema", scenarios.schema)
 _add("list", scenarios.list_scenarios)
 _add("train", train.train)
 _add("explain", explain.explain, context_settings=explain.CONTEXT_SETTINGS)
-_add("figure", figure.figure)
+_add("figure", report.figure)
 _add("report", report.report)
 app.add_typer(bench.app, name="bench")
 

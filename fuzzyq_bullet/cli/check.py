@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.options import FILE, FOLDER, PluginOption, ReplaceOption
+from fuzzyq_bullet.cli.options import FILE, FOLDER, Json, PlannerOption, PluginOption, ReplaceOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -40,10 +40,7 @@ def check(
         ),
     ],
     *,
-    planner: Annotated[
-        str | None,
-        typer.Option(help="Planner to use instead, with the same settings as far as it has them."),
-    ] = None,
+    planner: PlannerOption = None,
     seed: Annotated[int | None, typer.Option(help="(First) seed to use instead.")] = None,
     drive: Annotated[str | None, typer.Option(help="wheels or kinematic, instead.")] = None,
     repeat: Annotated[
@@ -63,7 +60,7 @@ def check(
     github: Annotated[
         bool, typer.Option("--github", help="Print annotations for GitHub Actions.")
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")] = False,
+    json: Json = False,
     video: Annotated[
         Video, typer.Option(help="Of which runs to keep a film and its record in --out.")
     ] = Video.none,
@@ -85,11 +82,10 @@ def check(
         UserError: If an option is wrong, or there is no scenario.
     """
     from fuzzyq_bullet.checks.baseline import Baselines, baselines_beside, refuse_bundled
-    from fuzzyq_bullet.checks.jobs import check_all
     from fuzzyq_bullet.checks.plan import Plan, discover, planned
     from fuzzyq_bullet.checks.reports import as_json, harmless, junit_xml, problem_command
-    from fuzzyq_bullet.checks.session import Session, make_films
-    from fuzzyq_bullet.checks.text import summary
+    from fuzzyq_bullet.checks.session import Session, check_all, make_films
+    from fuzzyq_bullet.checks.verdict import summary
     from fuzzyq_bullet.cli.console import say
     from fuzzyq_bullet.cli.process import say_error
     from fuzzyq_bullet.files import refuse_inputs, writable_files, writable_folder, write_text
@@ -155,7 +151,7 @@ def check(
 def _printer(*, json: bool, github: bool, width: int) -> Callable[[Verdict], None]:
     """Return what prints a verdict: on stdout, or on stderr where stdout is for JSON alone."""
     from fuzzyq_bullet.checks.reports import harmless, verdict_commands
-    from fuzzyq_bullet.checks.text import lines_of
+    from fuzzyq_bullet.checks.verdict import lines_of
 
     terminal = (sys.stderr if json else sys.stdout).isatty()
 
@@ -176,7 +172,7 @@ def _fitted(lines: list[str]) -> list[str]:
 
     Not so the command to copy, which the terminal itself breaks where it must.
     """
-    from fuzzyq_bullet.checks.text import AGAIN
+    from fuzzyq_bullet.checks.verdict import AGAIN
 
     mark, rest = lines[0][:5], lines[0][5:]
     if not os.environ.get("NO_COLOR"):

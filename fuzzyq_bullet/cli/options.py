@@ -68,6 +68,10 @@ ReplaceOption: TypeAlias = Annotated[
 ReplaceOthersOption: TypeAlias = Annotated[
     bool, typer.Option("--replace", help="Replace files that this command did not make.")
 ]
+PlannerOption: TypeAlias = Annotated[
+    str | None,
+    typer.Option(help="Planner to use instead, with the same settings as far as it has them."),
+]
 Json: TypeAlias = Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")]
 
 Jobs: TypeAlias = Annotated[

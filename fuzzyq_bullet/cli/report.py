@@ -1,4 +1,4 @@
-"""``fuzzyq report``: all sweeps of a folder as one HTML page."""
+"""``fuzzyq figure`` and ``report``: one figure of the paper; all sweeps of a folder as one page."""
 
 from __future__ import annotations
 
@@ -8,7 +8,37 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.options import FILE, Jobs, PluginOption, ReplaceOthersOption
+from fuzzyq_bullet.cli.options import FILE, FOLDER, Jobs, PluginOption, ReplaceOthersOption
+from fuzzyq_bullet.errors import UserError
+
+
+def figure(
+    number: Annotated[
+        int, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper.")
+    ],
+    out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
+    plugin: PluginOption = None,
+    replace: ReplaceOthersOption = False,
+) -> None:
+    """Draw a figure of the paper and print the files written.
+
+    Raises:
+        UserError: If no figure has this number, or the file cannot be written, or is there and no
+            figure of this command's.
+    """
+    from fuzzyq_bullet.experiments.figures import FIGURES, MARK, drawing
+    from fuzzyq_bullet.files import refuse_inputs
+    from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
+
+    if number not in FIGURES:
+        known = "; ".join(f"{key} ({entry.shows})" for key, entry in sorted(FIGURES.items()))
+        raise UserError(f"NUMBER: no figure {number}; there are: {known}")
+    target = out / f"figure{number}.png"
+    refuse_inputs([target], plugin_inputs(plugin or []))
+    if not replace:
+        refuse_others_file(target, MARK)
+    for path in drawing(number)(out):
+        typer.echo(path)
 
 
 def report(

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fuzzyq_bullet.cli.console import progress_bar, say
-from fuzzyq_bullet.cli.options import FOLDER, PluginOption, ReplaceOption, SpeedOption
+from fuzzyq_bullet.cli.options import (
+    FOLDER,
+    PlannerOption,
+    PluginOption,
+    ReplaceOption,
+    SpeedOption,
+)
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -27,10 +33,7 @@ def run(
         typer.Argument(metavar="SCENARIO", help="A scenario file, or the name of a bundled one."),
     ],
     *,
-    planner: Annotated[
-        str | None,
-        typer.Option(help="Planner to use instead, with the same settings as far as it has them."),
-    ] = None,
+    planner: PlannerOption = None,
     seed: Annotated[int | None, typer.Option(help="Seed to use instead.")] = None,
     drive: Annotated[str | None, typer.Option(help="wheels (physics) or kinematic.")] = None,
     plugin: PluginOption = None,
