@@ -22,7 +22,7 @@ from PIL import Image
 
 from fuzzyq_bullet import Trajectory, UserError, load_scenario, result_of, run, with_options
 from fuzzyq_bullet.cli import app
-from fuzzyq_bullet.experiments.figures.learning_curve import MARKS, picture
+from fuzzyq_bullet.figures.learning_curve import MARKS, picture
 from fuzzyq_bullet.learning import load_policy
 from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve, last_mean
 from fuzzyq_bullet.planning.policies import shipped

@@ -14,10 +14,10 @@ from test_unchanged import SAME_SINES, known, told
 
 from fuzzyq_bullet import load_scenario, result_of, run, with_options
 from fuzzyq_bullet.cli.report import figure
-from fuzzyq_bullet.experiments.figures import FIGURES, MARK, panels
-from fuzzyq_bullet.experiments.figures.panels import Grid, Panel, picture, scenario_of
-from fuzzyq_bullet.experiments.figures.runs import FIGURES as RUNS
-from fuzzyq_bullet.experiments.figures.topdown import HIT, LEAVES, LEGEND, PATH, TEMPORARY, draw_run
+from fuzzyq_bullet.figures import FIGURES, MARK
+from fuzzyq_bullet.figures.runs import FIGURES as RUNS
+from fuzzyq_bullet.figures.runs import Grid, Panel, picture, scenario_of
+from fuzzyq_bullet.figures.topdown import HIT, LEAVES, LEGEND, PATH, TEMPORARY, draw_run
 from fuzzyq_bullet.planning import MODES
 from fuzzyq_bullet.scenario import bundled_scenarios, realise
 
@@ -69,7 +69,7 @@ def test_every_panel_of_a_figure_ends_as_its_scenario_promises(
         runs.append(run(scenario))
         return runs[-1]
 
-    monkeypatch.setattr(panels, "run", recorded)
+    monkeypatch.setattr("fuzzyq_bullet.figures.runs.run", recorded)
     figure(number, tmp_path)
     assert capsys.readouterr().out == f"{tmp_path / f'figure{number}.png'}\n"
     with Image.open(tmp_path / f"figure{number}.png") as image:

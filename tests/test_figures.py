@@ -10,8 +10,8 @@ from PIL import Image
 
 from fuzzyq_bullet.cli.report import figure
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.experiments.figures import FIGURES, drawing
-from fuzzyq_bullet.experiments.figures.figure4 import picture, surfaces
+from fuzzyq_bullet.figures import FIGURES, drawing
+from fuzzyq_bullet.figures.figure4 import picture, surfaces
 from fuzzyq_bullet.fuzzy import paper_controller
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def test_an_unknown_figure_is_refused_and_the_known_are_named(tmp_path: Path) ->
         figure(99, tmp_path)
     (line,) = caught.value.problems
     assert "99" in line
-    assert all(f"{number} ({entry.shows})" in line for number, entry in FIGURES.items())
+    assert all(f"{number} ({shows})" in line for number, shows in FIGURES.items())
     assert not list(tmp_path.iterdir())
 
 

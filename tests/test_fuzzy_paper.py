@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fuzzyq_bullet.experiments.fuzzylite_twin import FuzzyliteTwin
 from fuzzyq_bullet.fuzzy import FuzzyController, RuleTable, paper_controller
 from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE, RULES, STEP, TURN
+from fuzzyq_bullet.studies.speed.inference import FuzzyliteTwin
 
 distances = st.floats(0.0, 5.0)
 differences = st.floats(-5.0, 5.0)

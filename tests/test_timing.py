@@ -5,8 +5,13 @@ import json
 import pytest
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.experiments.speed import Row, as_json, as_table
-from fuzzyq_bullet.experiments.timing import interleaved, median_ratio
+from fuzzyq_bullet.studies.speed.measurements import (
+    Row,
+    as_json,
+    as_table,
+    interleaved,
+    median_ratio,
+)
 
 
 def test_the_median_is_that_of_the_pairs_of_a_round():

@@ -8,6 +8,7 @@ from __future__ import annotations
 import inspect
 from itertools import pairwise
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -85,16 +86,16 @@ def speed(
     Raises:
         UserError: If the rate is not allowed.
     """
-    from fuzzyq_bullet.experiments.speed import MEASUREMENTS, as_json, as_table
+    from fuzzyq_bullet.studies.speed.measurements import MEASUREMENTS, as_json, as_table
 
     if not 1 <= rate <= 80 or 240 % rate:
         raise UserError(f"--rate: must divide 240 and be from 1 to 80, got {rate}")
 
     rows = []
     with progress_bar("measuring", len(MEASUREMENTS)) as (progress, bar):
-        for measurement in MEASUREMENTS:
-            progress.update(bar, note=measurement.name)
-            rows += measurement.rows(rounds, rate)
+        for name, measure in MEASUREMENTS.items():
+            progress.update(bar, note=name)
+            rows += resolve_name(measure)(rounds, rate)
             progress.advance(bar)
     if json:
         typer.echo(as_json(rows))

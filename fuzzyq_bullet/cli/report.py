@@ -26,12 +26,12 @@ def figure(
         UserError: If no figure has this number, or the file cannot be written, or is there and no
             figure of this command's.
     """
-    from fuzzyq_bullet.experiments.figures import FIGURES, MARK, drawing
+    from fuzzyq_bullet.figures import FIGURES, MARK, drawing
     from fuzzyq_bullet.files import refuse_inputs
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
 
     if number not in FIGURES:
-        known = "; ".join(f"{key} ({entry.shows})" for key, entry in sorted(FIGURES.items()))
+        known = "; ".join(f"{key} ({shows})" for key, shows in sorted(FIGURES.items()))
         raise UserError(f"NUMBER: no figure {number}; there are: {known}")
     target = out / f"figure{number}.png"
     refuse_inputs([target], plugin_inputs(plugin or []))
@@ -88,7 +88,7 @@ def report(
     if not replace:
         refuse_others_file(target, MARK)
 
-    from fuzzyq_bullet.experiments.figures import FIGURES
+    from fuzzyq_bullet.figures import FIGURES
     from fuzzyq_bullet.studies.report.films import Film, Wanted, make, wanted_films
     from fuzzyq_bullet.studies.report.page import page
 

@@ -114,9 +114,10 @@ def _learn(
         told = progress.shown(config.episodes, show)
         curve = learn_policy(config, tasks, files, told, resume=resume)
 
-    from fuzzyq_bullet.experiments.figures import learning_curve
+    from fuzzyq_bullet.figures.learning_curve import picture
+    from fuzzyq_bullet.figures.style import save_png
 
-    learning_curve.draw(curve, title_of(config, tasks), files.picture)
+    save_png(picture(curve, title_of(config, tasks)), files.picture)
     return curve
 
 

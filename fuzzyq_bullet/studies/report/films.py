@@ -204,7 +204,7 @@ def _make(order: dict[str, Any]) -> Any:
     folder = Path(order["folder"])
     folder.mkdir()
     if "figure" in order:
-        from fuzzyq_bullet.experiments.figures import drawing
+        from fuzzyq_bullet.figures import drawing
 
         path, *_ = drawing(order["figure"])(folder)
         return str(path)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from fuzzyq_bullet.experiments.figures import FIGURES
+from fuzzyq_bullet.figures import FIGURES
 from fuzzyq_bullet.studies.registry import study_names, study_of
 from fuzzyq_bullet.studies.report import sections
 from fuzzyq_bullet.studies.report.films import Film, Place
@@ -117,7 +117,7 @@ def _figures(figures: Mapping[int, bytes] | None) -> Section:
         return Section("figures", title, left_out)
     shown = []
     for number, contents in figures.items():
-        alt = f"Fig. {number}: {FIGURES[number].shows}."
+        alt = f"Fig. {number}: {FIGURES[number]}."
         caption = join(f"{alt} ", tag("code", f"fuzzyq figure {number}"))
         shown.append(sections.png(contents, alt, caption))
     return Section("figures", title, join(*shown))

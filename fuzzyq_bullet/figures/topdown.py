@@ -1,8 +1,4 @@
-"""One run seen from straight above, drawn from its record alone: the world, the way, what befell.
-
-For print: dark on white, in Okabe and Ito's palette, which the colour-blind tell apart. Lines and
-marks differ in width and shape too, so that the picture can be read in grey.
-"""
+"""One run seen from straight above, drawn from its record alone: the world, the way, the end."""
 
 from __future__ import annotations
 
@@ -14,6 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
+from fuzzyq_bullet.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED
 from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.scenario.models import Obstacle
 from fuzzyq_bullet.video.footprints import arrow
@@ -41,9 +38,9 @@ class Stroke(NamedTuple):
 
 
 PATH = {
-    "routine": Stroke("#0072B2", 1.8, "path: routine"),
-    "breakout": Stroke("#D55E00", 3.8, "breakout"),
-    "following": Stroke("#E69F00", 2.8, "following an obstacle"),
+    "routine": Stroke(BLUE, 1.8, "path: routine"),
+    "breakout": Stroke(RED, 3.8, "breakout"),
+    "following": Stroke(ORANGE, 2.8, "following an obstacle"),
 }
 """By mode. The thickest is the shortest: a breakout is often one decision long."""
 
@@ -64,13 +61,8 @@ _Shown: TypeAlias = dict[str, Artist]
 
 _CORNERS = 60
 """Of a polygon that stands for a circle."""
-_INK = "#222222"
 _OBSTACLE = "#B9BEC6"
-_EDGE = "#7C828C"
-_GOAL = "#009E73"
 _GOAL_FACE = "#40B696"
-_STRUCK = "#D55E00"
-_TARGET = "#A0478A"
 
 
 def _look(marker: str, face: str, rim: str, size: float) -> _Look:
@@ -78,12 +70,12 @@ def _look(marker: str, face: str, rim: str, size: float) -> _Look:
     return {"marker": marker, "mfc": face, "mec": rim, "ms": size, "mew": 1.4, "ls": ""}
 
 
-_START_LOOK = _look("o", "white", _INK, 9)
-_GOAL_LOOK = _look("o", _GOAL_FACE, _GOAL, 9)
-_END_LOOK = _look("o", _INK, _INK, 8)
-_TARGET_LOOK = _look("D", "white", _TARGET, 6.5)
+_START_LOOK = _look("o", "white", INK, 9)
+_GOAL_LOOK = _look("o", _GOAL_FACE, GREEN, 9)
+_END_LOOK = _look("o", INK, INK, 8)
+_TARGET_LOOK = _look("D", "white", PURPLE, 6.5)
 _LEAVE_LOOK = _look("s", "white", PATH["routine"].colour, 5)
-_HIT_LOOK = _look("X", _STRUCK, "white", 11)
+_HIT_LOOK = _look("X", RED, "white", 11)
 
 
 def draw_run(axes: Axes, trajectory: Trajectory, *, targets: bool = True) -> dict[str, Artist]:
@@ -116,15 +108,15 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
         struck = hit is not None and hit.obstacle == index
         axes.add_patch(_shape(obstacle, struck))
     for side in axes.spines.values():
-        side.set(linewidth=2.2 if scenario.arena.walls else 0.6, color=_INK)
+        side.set(linewidth=2.2 if scenario.arena.walls else 0.6, color=INK)
     start = Circle(
-        scenario.start.position, scenario.robot.radius, fc="white", ec=_INK, lw=1.4, zorder=3
+        scenario.start.position, scenario.robot.radius, fc="white", ec=INK, lw=1.4, zorder=3
     )
     axes.add_patch(start)
     goal = scenario.goal
     axes.add_patch(Circle(goal.position, goal.radius, fc=_GOAL_FACE, ec="none", zorder=3))
     # Its rim is seen through the robot that came to rest there.
-    axes.add_patch(Circle(goal.position, goal.radius, fc="none", ec=_GOAL, lw=2.0, zorder=8))
+    axes.add_patch(Circle(goal.position, goal.radius, fc="none", ec=GREEN, lw=2.0, zorder=8))
     shown["start"] = _sample(_START_LOOK)
     shown["goal"] = _sample(_GOAL_LOOK)
 
@@ -132,7 +124,7 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
 def _shape(obstacle: Obstacle, struck: bool) -> Patch:
     look: _Look = {
         "facecolor": _OBSTACLE,
-        "edgecolor": _STRUCK if struck else _EDGE,
+        "edgecolor": RED if struck else GREY,
         "linewidth": 2.2 if struck else 0.6,
         "zorder": 2.5 if struck else 2.0,
     }
@@ -174,7 +166,7 @@ def _escapes(axes: Axes, trajectory: Trajectory, shown: _Shown, targets: bool) -
     begun = targets & (decisions.mode == breakout) & (before != breakout)
     for here, target in zip(places[begun], decisions.target[begun], strict=True):
         line = np.stack([here, target])
-        axes.plot(*line.T, color=_TARGET, lw=1.2, ls=(0, (1.5, 1.8)), zorder=5.5)
+        axes.plot(*line.T, color=PURPLE, lw=1.2, ls=(0, (1.5, 1.8)), zorder=5.5)
         axes.plot(*target, zorder=6, **_TARGET_LOOK)
         shown[TEMPORARY] = _sample(_TARGET_LOOK)
     left = (decisions.mode == routine) & (before != routine)
@@ -188,7 +180,7 @@ def _end(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     x, y = trajectory.ticks.position[-1].tolist()
     radius = trajectory.scenario.robot.radius
     nose = arrow((x, y), float(trajectory.ticks.heading[-1]), 1.15 * radius)
-    axes.add_patch(Circle((x, y), radius, fc=_INK, ec="none", zorder=7))
+    axes.add_patch(Circle((x, y), radius, fc=INK, ec="none", zorder=7))
     axes.add_patch(Polygon(nose, fc="white", ec="none", zorder=7.5))
     shown[LAST] = _sample(_END_LOOK)
     if trajectory.collision is not None:

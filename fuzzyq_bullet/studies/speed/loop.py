@@ -6,16 +6,17 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from statistics import median, quantiles
 from unittest import mock
 
 import numpy as np
 
 from fuzzyq_bullet.consult import build_planner
 from fuzzyq_bullet.episode import Episode
-from fuzzyq_bullet.experiments.timing import interleaved
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.scenario import Arena, Goal, Limits, Random, Scenario, Start, realise
+from fuzzyq_bullet.studies.speed.measurements import Row, interleaved, median_ratio
 
 COUNTS = (125, 1000)
 """Numbers of obstacles that are compared."""
@@ -28,7 +29,7 @@ SIDE = math.sqrt(max(COUNTS) / (125 / 100.0))
 
 
 @dataclass(frozen=True)
-class LoopTimes:
+class _LoopTimes:
     """Times of episodes among one number of obstacles.
 
     Attributes:
@@ -103,7 +104,51 @@ class _Loop:
         return given, taken
 
 
-def compare(rounds: int, rate: int) -> list[LoopTimes]:
+def episodes(rounds: int, rate: int) -> list[Row]:
+    """Return how fast an episode is, with ``rate`` decisions a simulated second."""
+    few, many = _compare(rounds, rate)
+    among = f"125 obstacles, {rate} decisions a second"
+    decisions = f"{len(few.decisions)} decisions among {among}"
+    return [
+        Row(
+            f"real time factor of one core, {among}",
+            1.0 / median(few.whole),
+            40.0,
+            "at least",
+            f"{1e3 * median(few.whole):.1f} ms for a simulated second",
+        ),
+        Row(
+            f"share of bare physics in that time, {among}",
+            median_ratio(few.bare, few.whole),
+            0.5,
+            "at least",
+            f"{1e3 * median(few.bare):.1f} ms for a simulated second",
+        ),
+        Row(
+            "time of a simulated second, 1000 obstacles against 125",
+            median_ratio(many.whole, few.whole),
+            1.15,
+            "at most",
+            f"{1e3 * median(many.whole):.1f} ms against {1e3 * median(few.whole):.1f} ms",
+        ),
+        Row(
+            "time of one decision, median (ms)",
+            1e3 * median(few.decisions),
+            0.6,
+            "at most",
+            decisions,
+        ),
+        Row(
+            "time of one decision, 99th percentile (ms)",
+            1e3 * quantiles(few.decisions, n=100)[-1],
+            20.0,
+            "at most",
+            f"longest {1e3 * max(few.decisions):.1f} ms",
+        ),
+    ]
+
+
+def _compare(rounds: int, rate: int) -> list[_LoopTimes]:
     """Time episodes of the default planner, and their bare physics, in turn.
 
     Args:
@@ -127,7 +172,7 @@ def compare(rounds: int, rate: int) -> list[LoopTimes]:
             [sum(of_round) / simulated for of_round in zip(*times[kind::2][own], strict=True)]
             for kind in (0, 1)
         )
-        results.append(LoopTimes(whole, only, [t for loop in loops[own] for t in loop.decisions]))
+        results.append(_LoopTimes(whole, only, [t for loop in loops[own] for t in loop.decisions]))
     return results
 
 

@@ -1,17 +1,48 @@
-"""The same controller in pyfuzzylite, an engine written by others, to compare with.
+"""How fast the controller infers, against pyfuzzylite, an engine written by others.
 
 pyfuzzylite is not needed to run anything else, so it is imported only when a twin is built.
 """
 
 from __future__ import annotations
 
+from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fuzzyq_bullet.fuzzy import paper_controller
+from fuzzyq_bullet.studies.speed.measurements import Row, interleaved, median_ratio
+
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.inference import FuzzyController
     from fuzzyq_bullet.fuzzy.sets import Variable
+
+
+def controller(rounds: int, rate: int) -> list[Row]:
+    """Return how many times faster one inference is than that of a twin."""
+    mine = paper_controller()
+    what = "one inference against pyfuzzylite"
+    try:
+        twin = FuzzyliteTwin(mine)
+    except ImportError:
+        return [Row(what, None, 80.0, "at least", "pyfuzzylite is not installed (extra: test)")]
+    rng = np.random.default_rng(0)
+    inputs = np.column_stack([rng.uniform(0, 5, 100), rng.uniform(-5, 5, 100)]).tolist()
+    repeats = 20
+
+    def ours() -> None:
+        for _ in range(repeats):
+            for d, df in inputs:
+                mine.infer(d, df)
+
+    def theirs() -> None:
+        for d, df in inputs:
+            twin.infer(d, df)
+
+    own, other = interleaved([ours, theirs], rounds)
+    each, twins = ([t / n for t in times] for times, n in ((own, 100 * repeats), (other, 100)))
+    detail = f"{1e6 * median(each):.1f} µs against {1e6 * median(twins):.0f} µs"
+    return [Row(what, median_ratio(twins, each), 80.0, "at least", detail)]
 
 
 class FuzzyliteTwin:

@@ -1,17 +1,20 @@
-"""Figures made of panels: each a bundled scenario, run in physics and drawn from its record."""
+"""Figs. 9 to 12: runs from the paper's environments, seen from above, panel by panel.
+
+Each panel is a bundled scenario, run in physics and drawn from its record.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from fuzzyq_bullet.episode import run
-from fuzzyq_bullet.experiments.figures import MARK
-from fuzzyq_bullet.experiments.figures.topdown import LEGEND, draw_run
-from fuzzyq_bullet.files import writable_folder, written_beside
+from fuzzyq_bullet.figures import MARK
+from fuzzyq_bullet.figures.style import INK, save_png
+from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
+from fuzzyq_bullet.files import writable_folder
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.resources import data_folder
 from fuzzyq_bullet.scenario import load_scenario
@@ -71,18 +74,84 @@ class Grid(NamedTuple):
     close_up: tuple[float, float, float] | None = None
 
 
-def draw_panels(out: Path, name: str, panels: Sequence[Panel], grid: Grid) -> list[Path]:
-    """Run the scenario of every panel and draw all of them into ``out/NAME.png``.
+class RunsFigure(NamedTuple):
+    """A figure made of runs.
 
-    Raises:
-        UserError: If the file cannot be written.
+    Attributes:
+        name: Of its file.
+        panels: The scenarios that are run, in physics.
+        grid: How they are arranged.
     """
-    path = writable_folder(out) / f"{name}.png"
-    figure = picture(panels, [run(scenario_of(panel)) for panel in panels], grid)
-    with written_beside(path) as part:
+
+    name: str
+    panels: tuple[Panel, ...]
+    grid: Grid
+
+    def draw(self, out: Path) -> list[Path]:
+        """Run all panels and draw them into ``out/NAME.png``.
+
+        Raises:
+            UserError: If the file cannot be written.
+        """
+        path = writable_folder(out) / f"{self.name}.png"
+        runs = [run(scenario_of(panel)) for panel in self.panels]
+        figure = picture(self.panels, runs, self.grid)
         told = {"Software": MARK}
-        figure.savefig(part, format="png", bbox_inches="tight", pad_inches=_GAP, metadata=told)
-    return [path]
+        save_png(figure, path, bbox_inches="tight", pad_inches=_GAP, metadata=told)
+        return [path]
+
+
+FIGURES = {
+    # One field, drawn with one seed. In (a) and (b) Algorithm 2 is off (``margin: 0``), and an
+    # obstacle stands 4 mm from the robot's disc at the start, or from the goal's; bodies cannot
+    # share a place as they do in the paper. The controller is the same in all three.
+    9: RunsFigure(
+        "figure9",
+        (
+            Panel("figure-9a", "Obstacle at the start"),
+            Panel("figure-9b", "Obstacle at the goal"),
+            Panel("figure-9c", "Algorithm 2 keeps both clear"),
+        ),
+        Grid(columns=3, legend=3, close_up=(1.3, 1.3, 2.4)),
+    ),
+    # In (a) ``breakout: false`` takes the scheme away; (b) is the same trap with it.
+    10: RunsFigure(
+        "figure10",
+        (
+            Panel("figure-10a", "Without breakout"),
+            Panel("figure-10b", "With breakout, goal horizontal"),
+            Panel("figure-10c", "With breakout, goal vertical"),
+            Panel("figure-10d", "With breakout, goal oblique"),
+        ),
+        Grid(columns=2),
+    ),
+    # In (a) ``following: false`` takes the scheme away; (b) is the same obstacle with it.
+    11: RunsFigure(
+        "figure11",
+        (
+            Panel("figure-11a", "Without sustained avoidance"),
+            Panel("figure-11b", "With sustained avoidance"),
+        ),
+        Grid(columns=2, legend=3),
+    ),
+    # All obstacles are drawn from their seeds.
+    12: RunsFigure(
+        "figure12",
+        (
+            Panel("figure-12a", "80 obstacles"),
+            Panel("figure-12b", "80 obstacles, another field"),
+            Panel("figure-12c", "80 obstacles, other start and goal"),
+            Panel("figure-12d", "120 obstacles"),
+            Panel("figure-12e", "120 obstacles, another field"),
+            Panel("figure-12f", "30 rectangles"),
+            Panel("figure-12g", "30 rectangles, other start and goal"),
+            Panel("figure-12h", "60 rectangles"),
+            Panel("figure-12i", "60 rectangles, other start and goal"),
+        ),
+        Grid(columns=3, legend=7, targets=False),
+    ),
+}
+"""By number."""
 
 
 def scenario_of(panel: Panel) -> Scenario:
@@ -97,7 +166,6 @@ def picture(panels: Sequence[Panel], runs: Sequence[Trajectory], grid: Grid) -> 
     cell = _TITLE + parts * (grid.side + _GAP)
     size = (columns * (grid.side + _GAP) - _GAP, rows * cell - _GAP)
     figure = Figure(figsize=size, dpi=_DPI)
-    FigureCanvasAgg(figure)
 
     shown: dict[str, Artist] = {}
     for index, (panel, trajectory) in enumerate(zip(panels, runs, strict=True)):
@@ -159,5 +227,5 @@ def _enlarge(axes: Axes, below: Axes, close_up: tuple[float, float, float]) -> N
         spine.set(linewidth=1.0, linestyle=(0, (5, 3)))
     corner = (x - side / 2, y - side / 2)
     axes.add_patch(
-        Rectangle(corner, side, side, fc="none", ec="#222222", lw=1.0, ls=(0, (5, 3)), zorder=9)
+        Rectangle(corner, side, side, fc="none", ec=INK, lw=1.0, ls=(0, (5, 3)), zorder=9)
     )

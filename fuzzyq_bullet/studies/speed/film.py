@@ -1,22 +1,24 @@
-"""How fast a film is made: against the encoder alone, and against real time."""
+"""How fast a film is made: against the encoder alone, real time, and with the run before it."""
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from statistics import median
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.episode import run
-from fuzzyq_bullet.experiments.timing import interleaved
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import Goal, Limits, Random, Scenario, Start
+from fuzzyq_bullet.studies.speed.measurements import Row, interleaved, median_ratio
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video import record
 from fuzzyq_bullet.video.compositor import Compositor
@@ -27,25 +29,11 @@ from fuzzyq_bullet.video.timeline import Timeline
 Frames: TypeAlias = NDArray[np.uint8]
 
 
-@dataclass(frozen=True)
-class VideoTimes:
-    """Times by the clock on the wall (s), one a round; ffmpeg works in a process of its own.
+def film(rounds: int, rate: int) -> list[Row]:
+    """Return how fast a film is made of a run among 125 obstacles.
 
-    Attributes:
-        frames: Frames of the video.
-        seconds: How long it plays (s).
-        pipeline: Making the whole video from a record.
-        encoding: Only encoding its frames, which lie ready.
+    By the clock on the wall: ffmpeg works in a process of its own.
     """
-
-    frames: int
-    seconds: float
-    pipeline: list[float]
-    encoding: list[float]
-
-
-def compare(rounds: int) -> VideoTimes:
-    """Time both over the same run among 125 obstacles, in turn."""
     trajectory = _trajectory()
     with tempfile.TemporaryDirectory(prefix="fuzzyq-") as name:
         folder = Path(name)
@@ -56,7 +44,46 @@ def compare(rounds: int) -> VideoTimes:
             partial(_encode, frames, folder / "encoding.mp4"),
         ]
         pipeline, encoding = interleaved(works, rounds, clock=time.perf_counter)
-    return VideoTimes(info.frames, info.seconds, pipeline, encoding)
+    return [
+        Row(
+            "film against encoding ready-made frames",
+            median_ratio(encoding, pipeline),
+            0.7,
+            "at least",
+            f"{info.frames / median(pipeline):.0f} frames/s against "
+            f"{info.frames / median(encoding):.0f}",
+        ),
+        Row(
+            "film against real time, 720p",
+            info.seconds / median(pipeline),
+            6.0,
+            "at least",
+            f"{info.seconds:.1f} s of film in {median(pipeline):.1f} s",
+        ),
+    ]
+
+
+def whole_run(rounds: int, rate: int) -> list[Row]:
+    """Return how long a person waits for ``fuzzyq run``."""
+    taken = []
+    with tempfile.TemporaryDirectory(prefix="fuzzyq-") as name:
+        words = ["-m", "fuzzyq_bullet", "run", "mixed", "--replace", "--out", name]
+        for _ in range(min(rounds, 3)):
+            start = time.perf_counter()
+            subprocess.run([sys.executable, *words], capture_output=True, check=True)
+            taken.append(time.perf_counter() - start)
+        seconds = record(
+            Trajectory.load(Path(name) / "mixed.npz"), Path(name) / "again.mp4"
+        ).seconds
+    return [
+        Row(
+            "fuzzyq run mixed, start to finished film, against the film's length",
+            seconds / median(taken),
+            5.0,
+            "at least",
+            f"{seconds:.1f} s of film in {median(taken):.1f} s",
+        )
+    ]
 
 
 def _trajectory() -> Trajectory:

@@ -1,25 +1,28 @@
-"""The learning curve of a training: what each episode earned, and how often the goal was reached.
-
-For print: dark on white, in Okabe and Ito's palette, which the colour-blind tell apart. How an
-episode ended is told by a mark's shape too, so that the picture can be read in grey.
-"""
+"""The learning curve of a training: what each episode earned, how often the goal was reached."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
-from fuzzyq_bullet.files import written_beside
+from fuzzyq_bullet.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    PURPLE,
+    RED,
+    new_figure,
+    tidy,
+)
 from fuzzyq_bullet.learning.checkpoint import WINDOW, last_mean, reached
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from fuzzyq_bullet.learning.checkpoint import Curve
@@ -40,42 +43,27 @@ class Mark(NamedTuple):
 
 
 MARKS = {
-    "goal": Mark("o", "#0072B2", "goal"),
-    "collision": Mark("X", "#D55E00", "collision"),
-    "stuck": Mark("s", "#A0478A", "stuck"),
-    "timeout": Mark("^", "#E69F00", "out of time"),
-    (OTHERWISE := "going on"): Mark("D", "#7C828C", "cut short"),
+    "goal": Mark("o", BLUE, "goal"),
+    "collision": Mark("X", RED, "collision"),
+    "stuck": Mark("s", PURPLE, "stuck"),
+    "timeout": Mark("^", ORANGE, "out of time"),
+    (OTHERWISE := "going on"): Mark("D", GREY, "cut short"),
 }
 """By outcome; the last is an episode that the training itself ended, by its number of steps."""
 
 _OUTLIERS = 0.02
 """Share of the episodes that may lie so low that they are only hinted at."""
 
-_INK = "#222222"
-_GRID = "#D9DCE1"
 
-
-def draw(curve: Curve, title: str, path: Path) -> None:
-    """Draw the learning curve into a PNG, whole or not at all.
+def picture(curve: Curve, title: str) -> Figure:
+    """Return the figure: above what every episode earned, below the share that reached the goal.
 
     Args:
         curve: A row for each episode (``learning.train``).
         title: What was trained, in one line.
-        path: The file.
-
-    Raises:
-        UserError: If the file cannot be written.
     """
-    figure = picture(curve, title)
-    with written_beside(path) as part:
-        figure.savefig(part, format="png")
-
-
-def picture(curve: Curve, title: str) -> Figure:
-    """Return the figure: above what every episode earned, below the share that reached the goal."""
-    figure = Figure(figsize=(9.6, 6.6), dpi=120, layout="constrained")
+    figure = new_figure(9.6, 6.6)
     figure.get_layout_engine().set(w_pad=0.12, h_pad=0.1)  # type: ignore[union-attr,call-arg]
-    FigureCanvasAgg(figure)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     episodes = np.arange(1, len(curve) + 1)
     _returns(above, episodes, curve)
@@ -84,7 +72,7 @@ def picture(curve: Curve, title: str) -> Figure:
     margin = max(0.5, 0.01 * len(curve))
     below.set_xlim(1 - margin, len(curve) + margin)
     below.xaxis.set_major_locator(MaxNLocator("auto", integer=True, min_n_ticks=1))
-    figure.suptitle(title, fontsize=14, weight="bold", color=_INK)
+    figure.suptitle(title, fontsize=14, weight="bold", color=INK)
     return figure
 
 
@@ -103,17 +91,18 @@ def _returns(axes: Axes, episodes: NDArray[np.int64], curve: Curve) -> None:
             )  # fmt: skip
     mean = last_mean(totals)
     axes.plot(
-        episodes, mean, color=_INK, lw=2.4, marker=_alone(curve), label=_mean_of(curve), zorder=6
+        episodes, mean, color=INK, lw=2.4, marker=_alone(curve), label=_mean_of(curve), zorder=6
     )
     if floor > totals.min():
         axes.set_ylim(bottom=floor)
         axes.annotate(
             f"marks on the lower edge: lower still, down to {_plain(totals.min())} s", (0.0, 0.0),
             (6, 9), xycoords="axes fraction", textcoords="offset points", fontsize=10, zorder=7,
-            color=_INK, bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
+            color=INK, bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
         )  # fmt: skip
     axes.set_ylabel("return of an episode (s)", fontsize=12)
-    _house(axes)
+    tidy(axes, "both")
+    axes.tick_params(labelsize=11)
     axes.legend(
         loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False, fontsize=11,
         columnspacing=1.4, handletextpad=0.4, handlelength=1.4, markerscale=(26 / size) ** 0.5,
@@ -134,12 +123,13 @@ def _floor(totals: NDArray[np.float64]) -> float:
 
 def _success(axes: Axes, episodes: NDArray[np.int64], curve: Curve) -> None:
     share = last_mean(reached(curve))
-    axes.fill_between(episodes, share, color="#009E73", alpha=0.18, lw=0)
+    axes.fill_between(episodes, share, color=GREEN, alpha=0.18, lw=0)
     axes.plot(episodes, share, color="#00795A", lw=2.4, marker=_alone(curve), clip_on=False)
     axes.set_ylim(0.0, 1.04)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
     axes.set_ylabel(f"goal reached,\n{_mean_of(curve)}", fontsize=12)
-    _house(axes)
+    tidy(axes, "both")
+    axes.tick_params(labelsize=11)
     axes.annotate(
         f"{100 * share[-1]:.0f} %", (1.0, float(share[-1])), (4, 0),
         xycoords=("axes fraction", "data"), textcoords="offset points", ha="left", va="center",
@@ -158,11 +148,3 @@ def _alone(curve: Curve) -> str:
 
 def _mean_of(curve: Curve) -> str:
     return f"mean of the last {WINDOW}" if len(curve) > WINDOW else "mean so far"
-
-
-def _house(axes: Axes) -> None:
-    axes.grid(color=_GRID, lw=0.8, zorder=0)
-    axes.set_axisbelow(True)
-    axes.tick_params(labelsize=11)
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)

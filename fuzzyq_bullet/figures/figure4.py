@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from fuzzyq_bullet.experiments.figures import MARK
-from fuzzyq_bullet.files import writable_folder, written_beside
+from fuzzyq_bullet.figures import MARK
+from fuzzyq_bullet.figures.style import save_png
+from fuzzyq_bullet.files import writable_folder
 from fuzzyq_bullet.fuzzy import FuzzyController, paper_controller
 
 if TYPE_CHECKING:
@@ -28,9 +28,7 @@ def draw(out: Path) -> list[Path]:
         UserError: If the file cannot be written.
     """
     path = writable_folder(out) / "figure4.png"
-    figure = picture(paper_controller())
-    with written_beside(path) as part:
-        figure.savefig(part, format="png", metadata={"Software": MARK})
+    save_png(picture(paper_controller()), path, metadata={"Software": MARK})
     return [path]
 
 
@@ -54,7 +52,6 @@ def surfaces(
 def picture(controller: FuzzyController) -> Figure:
     """Return the figure: (a) the step N_s and (b) the turn N_a, as the paper orders them."""
     figure = Figure(figsize=(13, 6.4), dpi=120)
-    FigureCanvasAgg(figure)
     distance, difference, stride, turn = surfaces(controller)
     turn_variable, step_variable = controller.base.outputs
     _panel(

@@ -1,1 +1,0 @@
-"""Experiments over many runs: benchmarks, and the figures and tables of the paper."""

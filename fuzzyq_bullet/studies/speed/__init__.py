@@ -1,0 +1,1 @@
+"""What the project promises about its own speed, measured: ``fuzzyq bench speed``."""
