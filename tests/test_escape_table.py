@@ -9,7 +9,7 @@ import pytest
 from fuzzyq_bullet.planning import settings_for
 from fuzzyq_bullet.studies.escape.study import EscapePlan
 from fuzzyq_bullet.studies.escape.table import TRAPS, Line, table_of
-from fuzzyq_bullet.studies.runner.rows import Row
+from fuzzyq_bullet.studies.runner.episodes import Row
 
 
 def row(run: int = 0, **changes: Any) -> Row:

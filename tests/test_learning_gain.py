@@ -34,24 +34,24 @@ from fuzzyq_bullet.studies.learning.table import (
     time_ratios,
 )
 from fuzzyq_bullet.studies.learning.tables import tables_of
-from fuzzyq_bullet.studies.planner_sets import hash_of
-from fuzzyq_bullet.studies.runner.jobs import Environment
-from fuzzyq_bullet.studies.runner.rows import Row
-from fuzzyq_bullet.studies.selection import best_of, search
+from fuzzyq_bullet.studies.options import hash_of
+from fuzzyq_bullet.studies.runner.episodes import Environment, Row
+from fuzzyq_bullet.studies.selection import (
+    HALF,
+    ONE,
+    PAIRS,
+    TRIPLES,
+    best_of,
+    label_of,
+    search,
+    settings_of,
+)
 from fuzzyq_bullet.studies.statistics import (
     Estimate,
     difference_of_shares,
     mean_of_differences,
     median_of_ratios,
     ratio_of_means,
-)
-from fuzzyq_bullet.studies.weight_grid import (
-    HALF,
-    ONE,
-    PAIRS,
-    TRIPLES,
-    label_of,
-    settings_of,
 )
 from fuzzyq_bullet.training.registry import learn, recipe_of
 from fuzzyq_bullet.training.tasks import FIRST_SEED, Tasks

@@ -25,15 +25,13 @@ from fuzzyq_bullet.studies.learning.study import ComparisonPlan
 from fuzzyq_bullet.studies.learning.table import LEARNED
 from fuzzyq_bullet.studies.report.films import picked
 from fuzzyq_bullet.studies.report.markup import Html, join, tag
-from fuzzyq_bullet.studies.runner.jobs import Environment
-from fuzzyq_bullet.studies.runner.rows import Row, as_csv, from_csv
+from fuzzyq_bullet.studies.runner.episodes import Environment, Row, as_csv, from_csv
 from fuzzyq_bullet.studies.runner.storage import Folder
 from fuzzyq_bullet.studies.runner.sweep import run_job
-from fuzzyq_bullet.studies.selection import SearchPlan
+from fuzzyq_bullet.studies.selection import HALF, ONE, TRIPLES, USUAL_BREAKOUT, SearchPlan, label_of
 from fuzzyq_bullet.studies.steps.study import contenders
 from fuzzyq_bullet.studies.study import met_by_all
-from fuzzyq_bullet.studies.success.measures import measures_of, solved_by_all
-from fuzzyq_bullet.studies.weight_grid import HALF, ONE, TRIPLES, USUAL_BREAKOUT, label_of
+from fuzzyq_bullet.studies.success.table import measures_of, solved_by_all
 from fuzzyq_bullet.version import __version__
 from fuzzyq_bullet.workers import WorkerPool
 

@@ -3,12 +3,18 @@
 A study of one's own is a class with ``@register_study`` in a file that ``--plugin`` loads.
 """
 
-from fuzzyq_bullet.studies.options import counts_of, drives_of, one_drive_of, planner_of
+from fuzzyq_bullet.studies.options import (
+    PAPER,
+    counts_of,
+    described,
+    drives_of,
+    one_drive_of,
+    planner_of,
+    planners_of,
+)
 from fuzzyq_bullet.studies.plan import FieldsPlan, Plan
-from fuzzyq_bullet.studies.planner_sets import PAPER, described, planners_of
 from fuzzyq_bullet.studies.registry import register_study, study_names, study_of
-from fuzzyq_bullet.studies.runner.jobs import Environment
-from fuzzyq_bullet.studies.runner.rows import Row
+from fuzzyq_bullet.studies.runner.episodes import Environment, Row
 from fuzzyq_bullet.studies.study import Findings, Picture, Results, Stage, Study, Swept, Table
 
 __all__ = [

@@ -10,8 +10,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.scenario import Drive, Limits
-from fuzzyq_bullet.studies.runner.jobs import Environment, Job, Key
-from fuzzyq_bullet.studies.runner.rows import Row
+from fuzzyq_bullet.studies.runner.episodes import Environment, Job, Key, Row
 from fuzzyq_bullet.version import __version__
 
 M_S = 3000
@@ -79,10 +78,7 @@ class Plan(BaseModel):
     @cached_property
     def keys(self) -> frozenset[Key]:
         """What tells its episodes apart."""
-        return frozenset(
-            (name, drive, where.layout, -1 if where.count is None else where.count, where.run)
-            for where, name, drive in self.schedule()
-        )
+        return frozenset((name, drive, *where.place) for where, name, drive in self.schedule())
 
     @property
     def total(self) -> int:
@@ -102,7 +98,7 @@ class FieldsPlan(Plan):
     """Every planner in the same random environments, so many for each number of obstacles.
 
     Attributes:
-        planners: The settings of each, by what rows call it (``planner_sets.described``).
+        planners: The settings of each, by what rows call it (``options.described``).
         drive: What moves the robot.
         counts: Numbers of scattered obstacles, of radius 0.2 m.
         runs: Environments for every count.

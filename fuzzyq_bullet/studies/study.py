@@ -6,14 +6,13 @@ import shlex
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.studies.plan import FieldsPlan, Plan
-from fuzzyq_bullet.studies.runner.jobs import MOST_SEED
-from fuzzyq_bullet.studies.runner.rows import Row
+from fuzzyq_bullet.studies.runner.episodes import MOST_SEED, Place, Row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,6 +42,8 @@ class Swept:
         return bool(len(self.rows) == self.plan.total)
 
 
+Sense: TypeAlias = Literal["exactly", "at most", "at least"]
+"""On which side of its bound a figure should be."""
 Results: TypeAlias = Mapping[str, Swept]
 """What came of the plans of a study, by stage."""
 
@@ -208,6 +209,8 @@ class Study(BaseModel):
         told = plan.described()
         if "counts" in told:
             told["counts"] = numbers(told["counts"])
+        if "planners" in told:
+            told["planners"] = ",".join(told["planners"])
         return cls.model_validate({key: told[key] for key in told if key in cls.model_fields})
 
     @classmethod
@@ -237,6 +240,18 @@ class Study(BaseModel):
         return " ".join(["fuzzyq bench", self.name, *told, f"--out {shlex.quote(str(out))}"])
 
 
+def cell(value: object, form: str = "") -> str:
+    """Return a figure as a cell of a table shows it; – for None."""
+    return "–" if value is None else format(value, form)
+
+
+def meets(figure: float, sense: Sense, bound: float) -> bool:
+    """Tell whether a figure is what it should be."""
+    if sense == "exactly":
+        return figure == bound
+    return figure <= bound if sense == "at most" else figure >= bound
+
+
 def numbers(counts: Sequence[int]) -> str:
     """Return numbers of obstacles as options give them."""
     return ",".join(map(str, counts)) or "none"
@@ -244,8 +259,8 @@ def numbers(counts: Sequence[int]) -> str:
 
 def met_by_all(rows: Sequence[Row]) -> tuple[Row, ...]:
     """Return the rows of those environments that every planner has one for."""
-    met: dict[str, set[tuple[object, ...]]] = {}
+    met: dict[str, set[Place]] = {}
     for row in rows:
-        met.setdefault(row.planner, set()).add(row.key[2:])
+        met.setdefault(row.planner, set()).add(row.place)
     shared = set.intersection(*met.values()) if met else set()
-    return tuple(row for row in rows if row.key[2:] in shared)
+    return tuple(row for row in rows if row.place in shared)

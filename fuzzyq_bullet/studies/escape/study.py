@@ -15,7 +15,7 @@ from fuzzyq_bullet.studies.escape.table import PATH_RATIOS, TRAPS, Figures, Line
 from fuzzyq_bullet.studies.options import counts_of, drives_of, planner_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, PlannerDescription, Seed
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.runner.jobs import Environment
+from fuzzyq_bullet.studies.runner.episodes import Environment
 from fuzzyq_bullet.studies.study import Findings, Results, Stage, Study, Swept, Table, numbers
 
 _COLUMNS: tuple[tuple[str, Callable[[Figures], float | None], str], ...] = (

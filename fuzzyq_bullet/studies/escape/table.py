@@ -11,7 +11,7 @@ from statistics import fmean, median
 from typing import Literal
 
 from fuzzyq_bullet.scenario import Robot
-from fuzzyq_bullet.studies.runner.rows import Row
+from fuzzyq_bullet.studies.runner.episodes import Row
 
 TRAPS = ("semicircle", "arc", "u-shape", "long-wall")
 """Taken in turn, each of a size and direction that its seed draws."""

@@ -21,22 +21,24 @@ from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.scenario import Drive, Limits
 from fuzzyq_bullet.studies.learning.table import LEARNED, summary_of, time_ratios
 from fuzzyq_bullet.studies.learning.tables import tables_of
-from fuzzyq_bullet.studies.options import counts_of, one_drive_of
+from fuzzyq_bullet.studies.options import counts_of, hash_of, one_drive_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
-from fuzzyq_bullet.studies.planner_sets import hash_of
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.runner.jobs import MOST_RUNS, Environment
-from fuzzyq_bullet.studies.selection import Choice, SearchPlan, best_of, search
-from fuzzyq_bullet.studies.study import Findings, Picture, Results, Stage, Study, Swept, numbers
-from fuzzyq_bullet.studies.weight_grid import (
+from fuzzyq_bullet.studies.runner.episodes import MOST_RUNS, Environment
+from fuzzyq_bullet.studies.selection import (
     HALF,
     ONE,
     PAIRS,
     TRIPLES,
+    Choice,
+    SearchPlan,
+    best_of,
     label_of,
+    search,
     settings_of,
     words_of,
 )
+from fuzzyq_bullet.studies.study import Findings, Picture, Results, Stage, Study, Swept, numbers
 from fuzzyq_bullet.training.tasks import FIRST_SEED
 
 MOST = 10_000

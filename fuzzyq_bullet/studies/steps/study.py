@@ -17,21 +17,22 @@ from fuzzyq_bullet.planning import ImprovedFuzzySettings, PlannerSettings
 from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, Weights
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
-from fuzzyq_bullet.studies.options import one_drive_of, planner_of
+from fuzzyq_bullet.studies.options import PAPER, described, one_drive_of, planner_of, planners_of
 from fuzzyq_bullet.studies.plan import FieldsPlan, Plan
-from fuzzyq_bullet.studies.planner_sets import PAPER, described, planners_of
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.selection import SearchPlan, best_of, search
-from fuzzyq_bullet.studies.steps.table import Summary, summary_of
-from fuzzyq_bullet.studies.study import Findings, Results, Stage, Study, Swept, Table
-from fuzzyq_bullet.studies.weight_grid import (
+from fuzzyq_bullet.studies.selection import (
     ONE,
     PAIRS,
     USUAL_BREAKOUT,
+    SearchPlan,
+    best_of,
     label_of,
+    search,
     settings_of,
     words_of,
 )
+from fuzzyq_bullet.studies.steps.table import Summary, summary_of
+from fuzzyq_bullet.studies.study import Findings, Results, Stage, Study, Swept, Table
 
 COUNT = 50
 """Obstacles of Table 5."""

@@ -13,14 +13,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, Locator, MaxNLocator, PercentFormatter
 
-from fuzzyq_bullet.studies.success.measures import MEASURES, by_planner, measures_of
+from fuzzyq_bullet.studies.success.table import MEASURES, by_planner, measures_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from matplotlib.axes import Axes
 
-    from fuzzyq_bullet.studies.runner.rows import Row
+    from fuzzyq_bullet.studies.runner.episodes import Row
     from fuzzyq_bullet.studies.statistics import Share
     from fuzzyq_bullet.studies.success.table import Line, Summary
 

@@ -4,26 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
-from fuzzyq_bullet.studies.options import counts_of, one_drive_of
+from fuzzyq_bullet.studies.options import PAPER, counts_of, described, one_drive_of, planners_of
 from fuzzyq_bullet.studies.plan import FieldsPlan
-from fuzzyq_bullet.studies.planner_sets import PAPER, described, planners_of
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.runner.rows import Row
-from fuzzyq_bullet.studies.statistics import Share
-from fuzzyq_bullet.studies.study import Findings, Picture, Results, Study, Table, numbers
-from fuzzyq_bullet.studies.success.measures import (
-    Quartiles,
+from fuzzyq_bullet.studies.runner.episodes import Row
+from fuzzyq_bullet.studies.study import Findings, Picture, Results, Study, Table, cell, numbers
+from fuzzyq_bullet.studies.success.table import (
+    Line,
+    Summary,
     by_planner,
     measures_of,
     solved_by_all,
+    summary_of,
 )
-from fuzzyq_bullet.studies.success.table import Line, Summary, summary_of
 
 COUNTS = tuple(range(5, 130, 5))
 """Numbers of obstacles of Fig. 13."""
@@ -83,18 +82,6 @@ class Success(Study):
             seed=self.seed,
         )
 
-    @classmethod
-    def recalled(cls, plans: Mapping[str, Any]) -> Success:
-        """Return the study whose plan this is."""
-        plan: FieldsPlan = plans[cls.name]
-        return cls(
-            planners=",".join(plan.planners),
-            counts=numbers(plan.counts),
-            runs=plan.runs,
-            drive=plan.drive,
-            seed=plan.seed,
-        )
-
     def findings(self, results: Results) -> Findings:
         """Return success with its intervals, and what the runs that arrived have in common."""
         from fuzzyq_bullet.studies.success.picture import measures_picture, success_picture
@@ -146,7 +133,7 @@ def _tables(summary: Summary, about: str, steps: int) -> tuple[Table, Table]:
         for line in (*summary.lines, summary.total):
             cells = [line.cells[name] for name in summary.planners]
             runs = line.environments if whole else line.feasible
-            shares = [_shown(cell.all if whole else cell.feasible) for cell in cells]
+            shares = [cell(one.all if whole else one.feasible) for one in cells]
             rows.append(["all" if line.count is None else str(line.count), str(runs), *shares])
         made.append(Table(caption, columns, rows, left=(), total=True))
     return made[0], made[1]
@@ -160,7 +147,7 @@ def _headline(summary: Summary, drive: str) -> Table:
     for name in summary.planners:
         total = summary.total.cells[name]
         shares = [line.cells[name].all for line in chosen]
-        rows.append([name, *map(_shown, (*shares, total.all, total.feasible))])
+        rows.append([name, *map(cell, (*shares, total.all, total.feasible))])
     return Table(
         f"Share of environments in which the goal was reached, {drive}, by the number of "
         "obstacles, with Wilson's 95 % intervals. Last column: only where a disc of radius 0.22 m "
@@ -191,10 +178,10 @@ def _measures(rows: Sequence[Row]) -> tuple[Table, ...]:
                 [
                     name,
                     str(one.runs),
-                    _middle(one.path, ".2f"),
-                    _middle(one.time, ".1f"),
-                    _middle(one.clearance, ".3f"),
-                    "–" if one.least is None else f"{one.least:.3f}",
+                    cell(one.path, ".2f"),
+                    cell(one.time, ".1f"),
+                    cell(one.clearance, ".3f"),
+                    cell(one.least, ".3f"),
                 ]
             )
         return Table(caption, columns, lines)
@@ -212,9 +199,9 @@ def _measures(rows: Sequence[Row]) -> tuple[Table, ...]:
 
 def _ends(total: Line) -> Iterable[str]:
     """Say how the episodes ended that did not end well."""
-    for name, cell in total.cells.items():
-        failures = [f"{n} {kind}" for kind, n in cell.outcomes.items() if kind != "goal"]
-        yield f"{name}: {', '.join(failures) or 'no failures'} of {cell.all.of}"
+    for name, one in total.cells.items():
+        failures = [f"{n} {kind}" for kind, n in one.outcomes.items() if kind != "goal"]
+        yield f"{name}: {', '.join(failures) or 'no failures'} of {one.all.of}"
 
 
 def _claims(summary: Summary) -> Iterable[str]:
@@ -227,13 +214,3 @@ def _in_words(summary: Summary, name: str) -> str:
     ends = (summary.lines[0], summary.lines[-1])[: len(summary.lines)]
     told = [f"{line.cells[name].all.value:.2f} at {line.count}" for line in ends]
     return f"{name} {', '.join(told)}"
-
-
-def _middle(one: Quartiles | None, form: str) -> str:
-    if one is None:
-        return "–"
-    return f"{one.middle:{form}} [{one.low:{form}} – {one.high:{form}}]"
-
-
-def _shown(share: Share | None) -> str:
-    return "–" if share is None else str(share)

@@ -1,16 +1,20 @@
-"""From rows to shares: success over all environments and over those that have a way.
+"""From rows to what they say: shares of success; how long, how far and how near runs came.
 
+Shares are over all environments and over those that have a way; the rest is about runs that reached
+the goal.
 Pure arithmetic; nothing is run or printed.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from fuzzyq_bullet.studies.planner_sets import in_order
-from fuzzyq_bullet.studies.runner.rows import Row
+import numpy as np
+
+from fuzzyq_bullet.studies.options import in_order
+from fuzzyq_bullet.studies.runner.episodes import Place, Row
 from fuzzyq_bullet.studies.statistics import Share, share
 
 
@@ -85,10 +89,8 @@ def summary_of(rows: Iterable[Row]) -> Summary:
     Raises:
         ValueError: If a planner has none for an environment that another has one for.
     """
-    table: dict[str, dict[tuple[int, int], Row]] = {}
-    for row in rows:
-        table.setdefault(row.planner, {})[row.count or 0, row.run] = row
-    planners = in_order(list(table))
+    table = {name: {row.place: row for row in mine} for name, mine in by_planner(rows).items()}
+    planners = tuple(table)
     places = set(table[planners[0]])
     if any(set(mine) != places for mine in table.values()):
         raise ValueError("not every planner has a row for every environment")
@@ -96,25 +98,23 @@ def summary_of(rows: Iterable[Row]) -> Summary:
     closed = {
         place for mine in table.values() for place, row in mine.items() if row.feasible is False
     }
-    counts = sorted({count for count, _ in places})
+    counts = sorted({count for _, count, _ in places})
     lines = tuple(
-        _line(count, table, planners, [one for one in sorted(places) if one[0] == count], closed)
+        _line(count, table, [place for place in places if place[1] == count], closed)
         for count in counts
     )
-    total = _line(None, table, planners, sorted(places), closed)
+    total = _line(None, table, places, closed)
     return Summary(planners, lines, total, _claims(total))
 
 
 def _line(
     count: int | None,
-    table: dict[str, dict[tuple[int, int], Row]],
-    planners: Sequence[str],
-    places: Sequence[tuple[int, int]],
-    closed: set[tuple[int, int]],
+    table: Mapping[str, Mapping[Place, Row]],
+    places: Collection[Place],
+    closed: set[Place],
 ) -> Line:
     cells = {}
-    for name in planners:
-        mine = table[name]
+    for name, mine in table.items():
         everywhere = share(sum(mine[place].success for place in places), len(places))
         assert everywhere is not None
         open_ = [place for place in places if place not in closed]
@@ -139,3 +139,87 @@ def _claims(total: Line) -> tuple[Claim, ...]:
         best = all(rates[ours] > rate for name, rate in rates.items() if name != ours)
         claims.append(Claim(f"{ours} has the highest success rate", best))
     return tuple(claims)
+
+
+@dataclass(frozen=True)
+class Quartiles:
+    """Where the middle half of some figures lies.
+
+    Attributes:
+        low: A quarter of them is below.
+        middle: The median.
+        high: A quarter is above.
+    """
+
+    low: float
+    middle: float
+    high: float
+
+    def __format__(self, form: str) -> str:
+        return f"{self.middle:{form}} [{self.low:{form}} – {self.high:{form}}]"
+
+
+@dataclass(frozen=True)
+class Measures:
+    """What some runs that reached the goal came to; all are None without any.
+
+    Attributes:
+        runs: How many.
+        path: Driven over shortest path.
+        time: Simulated time to the goal (s).
+        clearance: Least distance to anything in a run (m).
+        least: The least of these (m).
+    """
+
+    runs: int
+    path: Quartiles | None
+    time: Quartiles | None
+    clearance: Quartiles | None
+    least: float | None
+
+
+MEASURES: dict[str, Callable[[Measures], Quartiles | None]] = {
+    "driven ÷ shortest path": lambda one: one.path,
+    "time to the goal (s)": lambda one: one.time,
+    "least distance to anything (m)": lambda one: one.clearance,
+}
+"""What is drawn, by what it is called."""
+
+
+def measures_of(rows: Iterable[Row], places: Collection[Place] | None = None) -> Measures:
+    """Return the figures of those runs that reached the goal.
+
+    Args:
+        rows: Rows of one planner.
+        places: The environments to look at; None for all.
+    """
+    reached = [row for row in rows if row.success and (places is None or row.place in places)]
+    near = [row.min_clearance_m for row in reached if row.min_clearance_m is not None]
+    return Measures(
+        runs=len(reached),
+        path=_quartiles([row.path_ratio for row in reached if row.path_ratio is not None]),
+        time=_quartiles([row.time_s for row in reached if row.time_s is not None]),
+        clearance=_quartiles(near),
+        least=min(near, default=None),
+    )
+
+
+def by_planner(rows: Iterable[Row]) -> dict[str, list[Row]]:
+    """Return rows by planner, in the order in which planners are shown."""
+    table: dict[str, list[Row]] = {}
+    for row in rows:
+        table.setdefault(row.planner, []).append(row)
+    return {name: table[name] for name in in_order(list(table))}
+
+
+def solved_by_all(rows: Iterable[Row]) -> set[Place]:
+    """Return the environments in which every planner reached the goal."""
+    table = [{row.place for row in mine if row.success} for mine in by_planner(rows).values()]
+    return set.intersection(*table) if table else set()
+
+
+def _quartiles(values: Sequence[float]) -> Quartiles | None:
+    if not values:
+        return None
+    low, middle, high = np.quantile(np.asarray(values), (0.25, 0.5, 0.75)).tolist()
+    return Quartiles(low, middle, high)
