@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from fuzzyq_bullet.planning import settings_for
-from fuzzyq_bullet.studies.escape.study import EscapePlan
-from fuzzyq_bullet.studies.escape.table import TRAPS, Line, table_of
+from fuzzyq_bullet.studies.escape import TRAPS, EscapePlan, Line, table_of
 from fuzzyq_bullet.studies.runner.episodes import Row
 
 

@@ -86,7 +86,7 @@ def run_study(
         Console(highlight=False, width=width).print(printed(findings))
     for name, one in results.items():
         say(f"  {one.folder / name}.csv")
-        if stage.keep_records and any((one.folder / "records").iterdir()):
+        if study.kept and any((one.folder / "records").iterdir()):
             say(f"  {one.folder / 'records'}")
     for path in (text, *images):
         say(f"  {path}")
@@ -143,7 +143,7 @@ def _swept(study: Study, stage: Stage, out: Path, pool: Pool, more: dict[str, An
             folder,
             settings,
             pool=pool,
-            work=work if stage.keep_records else work_for_row,
+            work=work if study.kept else work_for_row,
             progress=progress,
         )
     state = done.state

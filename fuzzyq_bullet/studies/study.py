@@ -55,14 +55,12 @@ class Stage(NamedTuple):
         name: What its table is called: ``NAME.csv``.
         plan: What is run.
         planners: The settings of each planner, by what rows call it.
-        keep_records: Whether runs are kept that failed although there was a way.
         notes: Lines to say before it begins.
     """
 
     name: str
     plan: Plan
     planners: Mapping[str, PlannerSettings]
-    keep_records: bool = False
     notes: tuple[str, ...] = ()
 
 
@@ -146,6 +144,7 @@ class Study(BaseModel):
         width: Columns that its tables need.
         pictured: Whether there is a ``NAME.png``.
         filmed: Whether a report shows films of the best, median and worst runs.
+        kept: Whether runs are kept that failed although there was a way.
         seed: Of the sweep.
     """
 
@@ -158,6 +157,7 @@ class Study(BaseModel):
     width: ClassVar[int] = 100
     pictured: ClassVar[bool] = False
     filmed: ClassVar[bool] = False
+    kept: ClassVar[bool] = False
 
     seed: int = Field(0, ge=0, le=MOST_SEED, description="Seed of the sweep.")
 

@@ -32,7 +32,7 @@ from fuzzyq_bullet.studies.selection import (
     words_of,
 )
 from fuzzyq_bullet.studies.steps.table import Summary, summary_of
-from fuzzyq_bullet.studies.study import Findings, Results, Stage, Study, Swept, Table
+from fuzzyq_bullet.studies.study import Findings, Results, Stage, Study, Swept, Table, cell
 
 COUNT = 50
 """Obstacles of Table 5."""
@@ -176,21 +176,16 @@ def _table(summary: Summary, about: str, limit: int, kinematic: bool) -> Table:
         if kinematic
         else "Steps are those of the physics, 240 a second: not the paper's, look at the time."
     )
-    rows = []
-    for line in summary.lines:
-        steps = line.steps
-        rows.append(
-            [
-                line.role,
-                "–" if line.paper is None else str(line.paper),
-                f"{line.reached} of {line.runs}",
-                str(line.collisions),
-                "–" if steps is None else f"{steps:.1f}",
-                _number(line.common),
-                _number(line.punished),
-                _number(line.time),
-            ]
-        )
+    rows = [
+        [
+            line.role,
+            cell(line.paper),
+            f"{line.reached} of {line.runs}",
+            str(line.collisions),
+            *(cell(one, ".1f") for one in (line.steps, line.common, line.punished, line.time)),
+        ]
+        for line in summary.lines
+    ]
     return Table(
         f"{about} {unit} {summary.feasible} of {summary.environments} environments have a way "
         "for a disc of radius 0.22 m.\n"
@@ -215,7 +210,3 @@ def _orders_in_words(summary: Summary) -> list[str]:
         elif one.reproduced is None:
             told.append(f"{one.fewer} and {one.more} solved no environment both: no order.")
     return told
-
-
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.1f}"

@@ -14,6 +14,7 @@ import numpy as np
 
 from fuzzyq_bullet.studies.runner.episodes import Row
 from fuzzyq_bullet.studies.statistics import (
+    ByPlanner,
     Estimate,
     by_planner,
     feasible_runs,
@@ -154,7 +155,7 @@ def summary_of(
     )
 
 
-def _orders_of(table: Mapping[str, Mapping[int, Row]]) -> tuple[Order, ...]:
+def _orders_of(table: ByPlanner) -> tuple[Order, ...]:
     known = sorted((name for name in PAPER_STEPS if name in table), key=PAPER_STEPS.__getitem__)
     orders = []
     for fewer, more in combinations(known, 2):

@@ -1,1 +1,0 @@
-"""Whether a planner finds a way wherever there is one: ``fuzzyq bench escape``."""
