@@ -20,7 +20,6 @@ from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.scenario import Drive, Limits
 from fuzzyq_bullet.studies.learning.table import LEARNED, summary_of, time_ratios
-from fuzzyq_bullet.studies.learning.tables import tables_of
 from fuzzyq_bullet.studies.options import counts_of, hash_of, one_drive_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
 from fuzzyq_bullet.studies.registry import register_study
@@ -189,7 +188,7 @@ class Learning(Study):
 
     def findings(self, results: Results) -> Findings:
         """Return what learning gains, with its intervals."""
-        from fuzzyq_bullet.studies.learning.picture import picture
+        from fuzzyq_bullet.studies.learning.shown import picture, tables_of
 
         found, plan = results["grid"].plan, results["comparison"].plan
         rows = results["comparison"].rows

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from fuzzyq_bullet.studies.statistics import (
     ratio_of_means,
     solved_by_all,
 )
+from fuzzyq_bullet.studies.study import Sense, meets
 
 LEARNED = "learned"
 """What rows call the planner that has learned."""
@@ -34,13 +35,6 @@ LEAST_GAIN = 0.95
 Dice: TypeAlias = Callable[[], np.random.Generator]
 """Gives a generator in the same state every time: the same pairs have the same interval."""
 _Figure: TypeAlias = Callable[[Row], "float | None"]
-
-
-def path_ratio(row: Row) -> float | None:
-    """Return driven over shortest path; None where there is no shortest."""
-    if row.path_length_m is None or not row.shortest_path_m:
-        return None
-    return row.path_length_m / row.shortest_path_m
 
 
 @dataclass(frozen=True)
@@ -80,7 +74,7 @@ class Figures:
             errors=sum(row.outcome == "error" for row in rows.values()),
             time=_mean(_known(shared, lambda row: row.time_s)),
             steps=_mean(_known(shared, lambda row: row.steps)),
-            path=_mean(_known(shared, path_ratio)),
+            path=_mean(_known(shared, lambda row: row.path_ratio)),
             clearance=_mean(clearances),
             least=min(clearances, default=None),
         )
@@ -148,7 +142,7 @@ class Against:
             time=ratio_of_means(*times, dice()),
             usual_time=median_of_ratios(*times, dice()),
             steps=ratio_of_means(*_pairs(both, lambda row: row.steps), dice()),
-            path=ratio_of_means(*_pairs(both, path_ratio), dice()),
+            path=ratio_of_means(*_pairs(both, lambda row: row.path_ratio), dice()),
             clearance=mean_of_differences(*_pairs(both, lambda row: row.min_clearance_m), dice()),
         )
 
@@ -186,16 +180,12 @@ class Target:
     what: str
     figure: float | None
     bound: float
-    sense: Literal["exactly", "at most", "at least"]
+    sense: Sense
 
     @property
     def met(self) -> bool:
         """Whether it is met; a gain that could not be measured is none."""
-        if self.figure is None:
-            return False
-        if self.sense == "exactly":
-            return self.figure == self.bound
-        return self.figure <= self.bound if self.sense == "at most" else self.figure >= self.bound
+        return self.figure is not None and meets(self.figure, self.sense, self.bound)
 
     def __str__(self) -> str:
         seen = "not measured" if self.figure is None else f"{self.figure:.4g}"

@@ -1,7 +1,6 @@
 """Fig. 13 as a picture, success by the number of obstacles; and path, time and clearance beside it.
 
-For print: dark on white, in Okabe and Ito's palette, which the colour-blind tell apart. Marks and
-dashes differ too, so that it can be read in grey, and planners stand side by side where they meet.
+Planners stand side by side where they meet.
 """
 
 from __future__ import annotations
@@ -9,16 +8,27 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, Locator, MaxNLocator, PercentFormatter
+from matplotlib.ticker import FixedLocator, MaxNLocator, PercentFormatter
 
+from fuzzyq_bullet.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    new_figure,
+    tidy,
+)
 from fuzzyq_bullet.studies.success.table import MEASURES, by_planner, measures_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from fuzzyq_bullet.studies.runner.episodes import Row
     from fuzzyq_bullet.studies.statistics import Share
@@ -44,17 +54,14 @@ class Look(NamedTuple):
 
 
 LOOKS = {
-    "fuzzy": Look("#D55E00", "v", (0, (5, 2))),
-    "improved-fuzzy": Look("#009E73", "s", (0, (7, 2, 1.5, 2))),
-    "q-learning": Look("#E69F00", "^", (0, (3, 2))),
-    "q-lambda": Look("#A0478A", "D", (0, (1.5, 1.5))),
-    "fuzzy-q-lambda": Look("#0072B2", "o", "-"),
+    "fuzzy": Look(RED, "v", (0, (5, 2))),
+    "improved-fuzzy": Look(GREEN, "s", (0, (7, 2, 1.5, 2))),
+    "q-learning": Look(ORANGE, "^", (0, (3, 2))),
+    "q-lambda": Look(PURPLE, "D", (0, (1.5, 1.5))),
+    "fuzzy-q-lambda": Look(BLUE, "o", "-"),
 }
-_OTHERS = (Look("#222222", "P", "-"), Look("#56B4E9", "X", "--"), Look("#7C828C", "*", ":"))
+_OTHERS = (Look(INK, "P", "-"), Look(SKY, "X", "--"), Look(GREY, "*", ":"))
 
-INK = "#222222"
-GRID = "#D9DCE1"
-_WAY = "#7C828C"
 MOST_TICKS = 8
 _SPREAD = 0.55
 """Width over which planners stand side by side, as a share of the least gap between counts, or of a
@@ -63,40 +70,30 @@ fifth of their range if that is less."""
 
 def success_picture(summary: Summary, title: str) -> Figure:
     """Return the figure: above over all environments, below over those that have a way."""
-    figure = Figure(figsize=(11.0, 8.6), dpi=120, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(11.0, 8.6)
     figure.suptitle(title, fontsize=13, weight="bold", color=INK)
     above, below = figure.subplots(2, 1, sharex=True, sharey=True)
     counts = np.array([line.count or 0 for line in summary.lines])
     ways = [line.feasible / line.environments for line in summary.lines]
     above.plot(
-        counts, ways, color=_WAY, lw=1.4, ls=":", marker="_", ms=9, zorder=2,
+        counts, ways, color=GREY, lw=1.4, ls=":", marker="_", ms=9, zorder=2,
         label="has a way for 0.22 m",
     )  # fmt: skip
     for axes, feasible in ((above, False), (below, True)):
         _planners(axes, summary, counts, feasible)
         axes.set_ylim(-0.02, 1.04)
         axes.yaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
-        axes.grid(axis="y", color=GRID, lw=0.8)
-        axes.set_axisbelow(True)
-        for side in ("top", "right"):
-            axes.spines[side].set_visible(False)
+        tidy(axes, "y")
     above.set_title("of all environments", loc="left", fontsize=11, color=INK)
     below.set_title("of the environments that have a way", loc="left", fontsize=11, color=INK)
-    below.set_xlabel("obstacles", fontsize=11)
-    below.xaxis.set_major_locator(_ticks_of(counts))
     figure.supylabel("goal reached, with Wilson's 95 % intervals", fontsize=11, color=INK)
-    figure.legend(
-        *above.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
-        frameon=False, handlelength=3.2,
-    )  # fmt: skip
+    _finish(figure, above, below, counts)
     return figure
 
 
 def measures_picture(rows: Sequence[Row], title: str) -> Figure:
     """Return the figure: median and middle half over the runs that reached the goal."""
-    figure = Figure(figsize=(11.0, 11.5), dpi=100, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(11.0, 11.5, dpi=100)
     figure.suptitle(title, fontsize=13, weight="bold", color=INK)
     panels = figure.subplots(len(MEASURES), 1, sharex=True)
     table = by_planner(rows)
@@ -119,16 +116,8 @@ def measures_picture(rows: Sequence[Row], title: str) -> Figure:
                 mec="white", mew=0.5, elinewidth=1.0, capsize=1.8, label=name,
             )  # fmt: skip
         axes.set_title(what, loc="left", fontsize=11, color=INK)
-        axes.grid(axis="y", color=GRID, lw=0.8)
-        axes.set_axisbelow(True)
-        for side in ("top", "right"):
-            axes.spines[side].set_visible(False)
-    panels[-1].set_xlabel("obstacles", fontsize=11)
-    panels[-1].xaxis.set_major_locator(_ticks_of(counts))
-    figure.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
-        frameon=False, handlelength=3.2,
-    )  # fmt: skip
+        tidy(axes, "y")
+    _finish(figure, panels[0], panels[-1], counts)
     return figure
 
 
@@ -138,10 +127,16 @@ def _looks_of(planners: Collection[str]) -> list[Look]:
     return [LOOKS.get(name) or next(others) for name in planners]
 
 
-def _ticks_of(counts: Counts) -> Locator:
-    """Return where the axis of obstacles is marked: at the counts, where they are not too many."""
+def _finish(figure: Figure, first: Axes, last: Axes, counts: Counts) -> None:
+    """Name the axis of obstacles, mark it at the counts, if these are few, and add the legend."""
+    last.set_xlabel("obstacles", fontsize=11)
     few = counts.size <= MOST_TICKS
-    return FixedLocator(counts.tolist()) if few else MaxNLocator("auto", integer=True)
+    ticks = FixedLocator(counts.tolist()) if few else MaxNLocator("auto", integer=True)
+    last.xaxis.set_major_locator(ticks)
+    figure.legend(
+        *first.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
+        frameon=False, handlelength=3.2,
+    )  # fmt: skip
 
 
 def _beside(counts: Counts, planners: Collection[str]) -> list[float]:
