@@ -1,4 +1,7 @@
-"""Figures of one run, from its record and, for the shortest path, the truth about its world."""
+"""Figures of one run, and its collision in words, from its record.
+
+The shortest path alone is the truth about its world.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,7 @@ from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
 from fuzzyq_bullet.planning import MODES
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.trajectory import Outcome, Trajectory
+from fuzzyq_bullet.wording import plain
 
 MOST_ROUND = 1500
 """Obstacles up to which the shortest path is looked for, a box counting as its four corners.
@@ -118,6 +122,48 @@ def has_way(scenario: Scenario) -> bool | None:
         scenario: A realised scenario.
     """
     return None if _is_crowded(scenario) else feasible(scenario)
+
+
+def collision_text(trajectory: Trajectory, listed: int) -> str:
+    """Say what the robot touched, where and when; nothing if it touched nothing.
+
+    Args:
+        trajectory: The record of the run.
+        listed: How many of its obstacles, the first ones, are in the scenario file.
+    """
+    collision = trajectory.collision
+    if collision is None:
+        return ""
+    what = name_of(trajectory.scenario, collision.obstacle, listed)
+    return touch_in_words(what, collision.point, collision.time)
+
+
+def name_of(scenario: Scenario, index: int, listed: int) -> str:
+    """Return what an obstacle is called.
+
+    Args:
+        scenario: A realised scenario.
+        index: Which of its obstacles; −1 for a wall.
+        listed: How many of them, the first ones, are in the scenario file.
+    """
+    if index < 0:
+        return "a wall"
+    drawn = "" if index < listed else " (drawn)"
+    return f"the {scenario.obstacles[index].shape} obstacles[{index}]{drawn}"
+
+
+def touch_in_words(what: str, point: tuple[float, float], time: float, place: str = "") -> str:
+    """Say what was touched, where and when.
+
+    Args:
+        what: Its name.
+        point: Where the two touched (m).
+        time: When (s).
+        place: Where the file has it.
+    """
+    x, y = (plain(value, 2) for value in point)
+    noted = f" ({place})" if place else ""
+    return f"touched {what}{noted} at ({x}, {y}) after {time:.2f} s"
 
 
 def _is_crowded(scenario: Scenario) -> bool:

@@ -1,4 +1,4 @@
-"""What differs between the systems and Pythons that the package runs on."""
+"""What differs between the installations, systems and Pythons that the package runs in."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ import os
 import threading
 import time
 from contextlib import suppress
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent
 
 
 def cores() -> int:
@@ -34,3 +37,22 @@ def end_with(parent: int) -> None:
         os._exit(1)
 
     threading.Thread(target=watch, name="watch-parent", daemon=True).start()
+
+
+def data_folder(name: str) -> Path:
+    """Return the bundled folder ``assets`` or ``scenarios``.
+
+    It lies beside the package in a checkout, inside it in a wheel.
+
+    Raises:
+        FileNotFoundError: If the installation carries neither place.
+    """
+    for root in (_PACKAGE / "_data", _PACKAGE.parent):
+        if (root / name).is_dir():
+            return root / name
+    raise FileNotFoundError(f"the installation lacks its folder {name!r}; install it again")
+
+
+def asset(name: str) -> Path:
+    """Return the path of one bundled asset, such as ``robot.urdf``."""
+    return data_folder("assets") / name

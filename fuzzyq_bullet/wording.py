@@ -30,6 +30,11 @@ def shorten(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:56]} ..."
 
 
+def plain(value: float, digits: int) -> str:
+    """Return a number with so many digits, and no negative zero."""
+    return f"{round(float(value), digits) + 0.0:.{digits}f}"
+
+
 def did_you_mean(word: Any, allowed: Iterable[str]) -> str:
     """Return ``did you mean 'radius'? `` or nothing, for a word that is not allowed."""
     close = difflib.get_close_matches(str(word)[:100], list(allowed), n=1)

@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 
 from fuzzyq_bullet import __version__
 from fuzzyq_bullet.cli.app import app
-from fuzzyq_bullet.collision_text import collision_text
+from fuzzyq_bullet.metrics import collision_text
 from fuzzyq_bullet.trajectory import Collision, Trajectory
 
 RESULT_KEYS = [
@@ -202,7 +202,7 @@ def test_schema_is_one_that_the_bundled_scenarios_fulfil(fuzzyq: Call) -> None:
     schema = json.loads(fuzzyq("schema").stdout)
     jsonschema.Draft202012Validator.check_schema(schema)
     validator = jsonschema.Draft202012Validator(schema)
-    from fuzzyq_bullet.resources import data_folder
+    from fuzzyq_bullet.platforms import data_folder
 
     for path in data_folder("scenarios").glob("*.yaml"):
         validator.validate(yaml.safe_load(path.read_text()))

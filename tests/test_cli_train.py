@@ -26,7 +26,7 @@ from fuzzyq_bullet.figures.learning_curve import MARKS, picture
 from fuzzyq_bullet.learning import load_policy
 from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve, last_mean
 from fuzzyq_bullet.planning.policies import shipped
-from fuzzyq_bullet.resources import asset
+from fuzzyq_bullet.platforms import asset
 from fuzzyq_bullet.scenario import dump_scenario, parse_scenario
 from fuzzyq_bullet.training.registry import RECIPES
 from fuzzyq_bullet.training.session import SHIPPED, TrainingConfig, TrainingProgress

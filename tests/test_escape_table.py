@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from fuzzyq_bullet.planning import settings_for
+from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.escape import TRAPS, EscapePlan, Line, table_of
-from fuzzyq_bullet.studies.runner.episodes import Row
 
 
 def row(run: int = 0, **changes: Any) -> Row:

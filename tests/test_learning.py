@@ -26,7 +26,7 @@ from fuzzyq_bullet.learning import (
     greedy,
     train,
 )
-from fuzzyq_bullet.learning.tabular import FAINT, TraceKind
+from fuzzyq_bullet.learning.learners import FAINT, TraceKind
 
 STATES, ACTIONS = 5, 3
 KINDS = st.sampled_from(["accumulating", "replacing"])

@@ -23,6 +23,7 @@ from fuzzyq_bullet.learning import Policy
 from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, Weights
 from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.studies import Findings
+from fuzzyq_bullet.studies.episodes import Environment, Row
 from fuzzyq_bullet.studies.learning.shown import picture, tables_of
 from fuzzyq_bullet.studies.learning.study import MOST_SEED, ComparisonPlan, Learning, unseen
 from fuzzyq_bullet.studies.learning.table import (
@@ -34,7 +35,6 @@ from fuzzyq_bullet.studies.learning.table import (
     time_ratios,
 )
 from fuzzyq_bullet.studies.options import hash_of
-from fuzzyq_bullet.studies.runner.episodes import Environment, Row
 from fuzzyq_bullet.studies.selection import (
     HALF,
     ONE,

@@ -15,7 +15,7 @@ from fuzzyq_bullet import Trajectory, load_scenario, with_options
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import alone_at, own_parts, remove_parts, written_beside
 from fuzzyq_bullet.outputs import run_name
-from fuzzyq_bullet.resources import asset
+from fuzzyq_bullet.platforms import asset
 
 GIVEN = "would be replaced, but is an input of this command"
 

@@ -167,7 +167,7 @@ def test_an_installed_package_runs_away_from_the_checkout(elsewhere: Path, tmp_p
         return done.stdout
 
     code = (
-        "from fuzzyq_bullet import resources\n"
+        "from fuzzyq_bullet import platforms as resources\n"
         "print(resources.__file__)\n"
         "print(resources.data_folder('assets'), resources.data_folder('scenarios'))"
     )

@@ -20,18 +20,18 @@ from fuzzyq_bullet import UserError
 from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 from fuzzyq_bullet.studies import FieldsPlan, Plan, described, planners_of
+from fuzzyq_bullet.studies.episodes import Environment, Row, as_csv, from_csv
 from fuzzyq_bullet.studies.escape import Escape
 from fuzzyq_bullet.studies.learning.study import ComparisonPlan
 from fuzzyq_bullet.studies.learning.table import LEARNED
 from fuzzyq_bullet.studies.report.films import picked
 from fuzzyq_bullet.studies.report.markup import Html, join, tag
-from fuzzyq_bullet.studies.runner.episodes import Environment, Row, as_csv, from_csv
-from fuzzyq_bullet.studies.runner.storage import Folder
-from fuzzyq_bullet.studies.runner.sweep import run_job
 from fuzzyq_bullet.studies.selection import HALF, ONE, TRIPLES, USUAL_BREAKOUT, SearchPlan, label_of
 from fuzzyq_bullet.studies.steps.study import contenders
+from fuzzyq_bullet.studies.storage import Folder
 from fuzzyq_bullet.studies.study import met_by_all
 from fuzzyq_bullet.studies.success.table import measures_of, solved_by_all
+from fuzzyq_bullet.studies.sweep import run_job
 from fuzzyq_bullet.version import __version__
 from fuzzyq_bullet.workers import WorkerPool
 

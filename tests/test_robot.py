@@ -9,7 +9,7 @@ from fuzzyq_bullet.drives.velocity_controller import STILL, Twist, limit_acceler
 from fuzzyq_bullet.drives.wheels import COMMAND_STEPS
 from fuzzyq_bullet.physics.engine import TIME_STEP
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.resources import asset
+from fuzzyq_bullet.platforms import asset
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel, register_robot
 from fuzzyq_bullet.scenario import Arena, Robot
 

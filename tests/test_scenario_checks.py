@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names
-from fuzzyq_bullet.resources import data_folder
+from fuzzyq_bullet.platforms import data_folder
 from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
     Scenario,

@@ -19,9 +19,9 @@ from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.cli.study import printed
 from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 from fuzzyq_bullet.studies import FieldsPlan, Swept
+from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.options import PAPER, described
 from fuzzyq_bullet.studies.plan import LIMITS, M_S
-from fuzzyq_bullet.studies.runner.episodes import Row
 from fuzzyq_bullet.studies.statistics import share
 from fuzzyq_bullet.studies.steps.study import Steps, contenders, roles
 from fuzzyq_bullet.studies.steps.table import PAPER_STEPS

@@ -20,9 +20,9 @@ from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import Limits, realise
-from fuzzyq_bullet.studies.runner.episodes import Environment, Job, Row, as_csv
-from fuzzyq_bullet.studies.runner.storage import Folder, Journal
-from fuzzyq_bullet.studies.runner.sweep import State, local_pool, run_job, sweep
+from fuzzyq_bullet.studies.episodes import Environment, Job, Row, as_csv
+from fuzzyq_bullet.studies.storage import Folder, Journal
+from fuzzyq_bullet.studies.sweep import State, local_pool, run_job, sweep
 from fuzzyq_bullet.workers import Pool, WorkerPool
 
 FAST = ImprovedFuzzySettings(weights=(1.0, 1.0))

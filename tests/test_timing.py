@@ -5,7 +5,7 @@ import json
 import pytest
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.studies.speed.measurements import (
+from fuzzyq_bullet.studies.speed import (
     Row,
     as_json,
     as_table,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fuzzyq_bullet.learning.tabular import Floats
+from fuzzyq_bullet.learning.learners import Floats
 from fuzzyq_bullet.learning.training import episode_rng
 
 _START = (3, 0)

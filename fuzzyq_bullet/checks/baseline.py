@@ -15,8 +15,7 @@ from fuzzyq_bullet.checks.verdict import Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes, write_text
 from fuzzyq_bullet.metrics import Result
-from fuzzyq_bullet.platforms import pybullet_in_words
-from fuzzyq_bullet.resources import data_folder
+from fuzzyq_bullet.platforms import data_folder, pybullet_in_words
 
 FILE = "check-record.json"
 """Its name, one in each folder that has scenarios."""

@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.checks.verdict import Job, Touch, Verdict, explanation, replay_command
-from fuzzyq_bullet.collision_text import name_of, plain, touch_in_words
 from fuzzyq_bullet.early_warnings import NO_WAY, early_warnings
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.metrics import Result, has_way, result_of
+from fuzzyq_bullet.metrics import Result, has_way, name_of, result_of, touch_in_words
 from fuzzyq_bullet.planning.registry import settings_for
 from fuzzyq_bullet.scenario import (
     Scenario,
@@ -30,7 +29,7 @@ from fuzzyq_bullet.scenario import (
 )
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
-from fuzzyq_bullet.wording import error_in_words
+from fuzzyq_bullet.wording import error_in_words, plain
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory

@@ -8,9 +8,9 @@ from typing import Any, Literal, TypeAlias, get_args
 
 from pydantic import BaseModel, ConfigDict
 
-from fuzzyq_bullet.collision_text import plain
 from fuzzyq_bullet.errors import printable
 from fuzzyq_bullet.metrics import Result
+from fuzzyq_bullet.wording import plain
 from fuzzyq_bullet.workers.pool import MEMORY_MB, TIMEOUT
 
 Status: TypeAlias = Literal["passed", "failed", "broken", "invalid"]

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from fuzzyq_bullet.cli.console import progress_bar, say
 from fuzzyq_bullet.cli.options import (
     FOLDER,
     Backend,
@@ -24,6 +23,8 @@ from fuzzyq_bullet.cli.options import (
     ReplaceOthersOption,
     Scheduler,
     help_of,
+    progress_bar,
+    say,
 )
 from fuzzyq_bullet.errors import UserError
 
@@ -86,7 +87,7 @@ def speed(
     Raises:
         UserError: If the rate is not allowed.
     """
-    from fuzzyq_bullet.studies.speed.measurements import MEASUREMENTS, as_json, as_table
+    from fuzzyq_bullet.studies.speed import MEASUREMENTS, as_json, as_table
 
     if not 1 <= rate <= 80 or 240 % rate:
         raise UserError(f"--rate: must divide 240 and be from 1 to 80, got {rate}")

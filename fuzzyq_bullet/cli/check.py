@@ -86,7 +86,7 @@ def check(
     from fuzzyq_bullet.checks.reports import as_json, harmless, junit_xml, problem_command
     from fuzzyq_bullet.checks.session import Session, check_all, make_films
     from fuzzyq_bullet.checks.verdict import summary
-    from fuzzyq_bullet.cli.console import say
+    from fuzzyq_bullet.cli.options import say
     from fuzzyq_bullet.cli.process import say_error
     from fuzzyq_bullet.files import refuse_inputs, writable_files, writable_folder, write_text
     from fuzzyq_bullet.outputs import plugin_inputs

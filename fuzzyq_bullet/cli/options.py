@@ -1,13 +1,18 @@
-"""Options that several commands have, each said once, and where a command's help comes from."""
+"""What the commands share: options, each said once, their help, and how they talk to a person."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
+from rich.console import Console
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
 
 SLOWEST, FASTEST = 0.1, 100.0
 """Playback speeds of a video."""
@@ -82,3 +87,27 @@ Backend: TypeAlias = Annotated[str, typer.Option(help="loky (this machine), or d
 Scheduler: TypeAlias = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Of the Dask scheduler.")
 ]
+
+stderr = Console(stderr=True, highlight=False)
+"""Everything but results goes there."""
+
+
+def say(text: str, style: str = "") -> None:
+    """Print one line for people; never broken in two, for it may hold a path."""
+    stderr.print(text, style=style, markup=False, soft_wrap=True)
+
+
+@contextmanager
+def progress_bar(description: str, total: float | None = None) -> Iterator[tuple[Progress, TaskID]]:
+    """Show a progress bar on stderr while the block runs; nothing where stderr is no terminal."""
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[note]}"),
+        TimeRemainingColumn(),
+    )
+    hidden = not stderr.is_terminal
+    with Progress(*columns, console=stderr, transient=True, disable=hidden) as progress:
+        yield progress, progress.add_task(description, total=total, note="")

@@ -69,7 +69,7 @@ def report(
         UserError: If DIR holds no sweep, one is damaged, or the page cannot be written, or is there
             and no page of this command's.
     """
-    from fuzzyq_bullet.cli.console import progress_bar, say
+    from fuzzyq_bullet.cli.options import progress_bar, say
     from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
     from fuzzyq_bullet.studies.report.found import studies_below

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fuzzyq_bullet.cli.console import progress_bar, say
 from fuzzyq_bullet.cli.options import (
     FOLDER,
     PlannerOption,
     PluginOption,
     ReplaceOption,
     SpeedOption,
+    progress_bar,
+    say,
 )
 from fuzzyq_bullet.errors import UserError
 
@@ -177,7 +178,8 @@ def _with_options(scenario: Scenario, **options: Any) -> Scenario:
 def _summarise(
     result: Result, misses: Sequence[str], trajectory: Trajectory, *, listed: int
 ) -> None:
-    from fuzzyq_bullet.collision_text import collision_text, plain
+    from fuzzyq_bullet.metrics import collision_text
+    from fuzzyq_bullet.wording import plain
 
     clearance = result.min_clearance_m
     near = "nothing near" if clearance is None else f"least clearance {plain(clearance, 3)} m"

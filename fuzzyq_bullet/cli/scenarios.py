@@ -27,7 +27,7 @@ def validate(
     Raises:
         UserError: If any of them is wrong; one line a mistake.
     """
-    from fuzzyq_bullet.cli.console import say
+    from fuzzyq_bullet.cli.options import say
 
     problems: list[str] = []
     for file in files:

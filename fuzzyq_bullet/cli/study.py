@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzyq_bullet.cli.console import progress_bar, say
+from fuzzyq_bullet.cli.options import progress_bar, say
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from rich.console import Group
     from rich.table import Table as RichTable
 
-    from fuzzyq_bullet.studies.runner.sweep import Progress, State
     from fuzzyq_bullet.studies.study import Findings, Stage, Study, Swept, Table
+    from fuzzyq_bullet.studies.sweep import Progress, State
     from fuzzyq_bullet.workers import Pool
 
 BACKENDS = ("loky", "dask")
@@ -101,7 +101,7 @@ def _refuse_others(study: Study, out: Path) -> None:
     Raises:
         UserError: If it is not.
     """
-    from fuzzyq_bullet.studies.runner.storage import SETTINGS, Folder
+    from fuzzyq_bullet.studies.storage import SETTINGS, Folder
 
     folders = {name: out / study.folders.get(name, "") for name in study.stage_kinds()}
     claimed = {name for name, folder in folders.items() if Folder(folder).is_claimed()}
@@ -129,8 +129,8 @@ def _judge(findings: Findings, last: Swept) -> None:
 
 def _swept(study: Study, stage: Stage, out: Path, pool: Pool, more: dict[str, Any]) -> Swept:
     """Run one sweep of a study in its folder, and say how it went."""
-    from fuzzyq_bullet.studies.runner.sweep import sweep, work, work_for_row
     from fuzzyq_bullet.studies.study import Swept
+    from fuzzyq_bullet.studies.sweep import sweep, work, work_for_row
 
     for note in stage.notes:
         say(note)
@@ -201,7 +201,7 @@ def _pool(
     if (backend == "dask") != (scheduler is not None):
         raise UserError("--backend dask and --scheduler ADDRESS belong together")
     if scheduler is None:
-        from fuzzyq_bullet.studies.runner.sweep import local_pool
+        from fuzzyq_bullet.studies.sweep import local_pool
 
         with local_pool(jobs, plugins) as pool:
             yield pool

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fuzzyq_bullet.cli.console import progress_bar, say
-from fuzzyq_bullet.cli.options import PluginOption
+from fuzzyq_bullet.cli.options import PluginOption, progress_bar, say
 from fuzzyq_bullet.errors import Stopped, UserError
 
 if TYPE_CHECKING:

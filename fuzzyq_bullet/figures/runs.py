@@ -16,7 +16,7 @@ from fuzzyq_bullet.figures.style import INK, save_png
 from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
 from fuzzyq_bullet.files import writable_folder
 from fuzzyq_bullet.metrics import result_of
-from fuzzyq_bullet.resources import data_folder
+from fuzzyq_bullet.platforms import data_folder
 from fuzzyq_bullet.scenario import load_scenario
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.ground_truth.free_arcs import FreeArcs, free_arcs
+from fuzzyq_bullet.ground_truth.configuration_space import FreeArcs, free_arcs
 from fuzzyq_bullet.ground_truth.tangent_graph import (
     Route,
     TangentGraph,

@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fuzzyq_bullet.geometry import Floats
-    from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
-    from fuzzyq_bullet.ground_truth.free_arcs import FreeArcs
+    from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace, FreeArcs
 
     Ints: TypeAlias = NDArray[np.intp]
 

@@ -1,6 +1,6 @@
 """Q-learning and Q(λ), training and policies; it knows nothing of robots."""
 
-from fuzzyq_bullet.learning.linear import Features, LinearQLambda
+from fuzzyq_bullet.learning.learners import Features, LinearQLambda, QLambda, QLearning
 from fuzzyq_bullet.learning.policy import Policy, PolicySpec, load_policy
 from fuzzyq_bullet.learning.schedules import (
     EXPLORATION,
@@ -9,7 +9,6 @@ from fuzzyq_bullet.learning.schedules import (
     TRACE_DECAY,
     Schedule,
 )
-from fuzzyq_bullet.learning.tabular import QLambda, QLearning
 from fuzzyq_bullet.learning.training import (
     Learner,
     Problem,

@@ -30,7 +30,7 @@ from fuzzyq_bullet.untrusted import read_object, shown
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fuzzyq_bullet.learning.tabular import Floats
+    from fuzzyq_bullet.learning.learners import Floats
 
 FORMAT = 1
 MAX_BYTES = 4_000_000

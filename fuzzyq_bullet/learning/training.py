@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from fuzzyq_bullet.learning.tabular import Floats
+    from fuzzyq_bullet.learning.learners import Floats
 
 MAX_EPISODES = 1_000_000
 _CHOICES = 0

@@ -8,7 +8,7 @@ from pathlib import Path
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, PolicySpec, load_policy
 from fuzzyq_bullet.planning.settings import PolicySettings
-from fuzzyq_bullet.resources import asset
+from fuzzyq_bullet.platforms import asset
 
 
 def shipped(planner: str) -> Path:

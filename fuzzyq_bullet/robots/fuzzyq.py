@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fuzzyq_bullet.resources import asset
+from fuzzyq_bullet.platforms import asset
 from fuzzyq_bullet.robots.base import RobotModel, register_robot
 
 FUZZYQ = register_robot(RobotModel(name="fuzzyq", urdf_file=asset("robot.urdf")))

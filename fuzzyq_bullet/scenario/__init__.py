@@ -25,10 +25,10 @@ from fuzzyq_bullet.scenario.models import (
     Robot,
     Scenario,
     Start,
+    scenario_schema,
 )
 from fuzzyq_bullet.scenario.options import with_options
 from fuzzyq_bullet.scenario.random_tasks import random_task
-from fuzzyq_bullet.scenario.schema import scenario_schema
 
 __all__ = [
     "MAX_OBSTACLES",

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationInfo, cre
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.quantities import Model, Number
-from fuzzyq_bullet.wording import error_in_words
+from fuzzyq_bullet.wording import error_in_words, plain
 
 OutcomeName: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
 Sense: TypeAlias = Literal["exactly", "at least", "at most"]
@@ -61,7 +61,7 @@ class _Expectation:
         if figure is None:
             return f"{self.missing}; {wanted}"
         if not isinstance(figure, str):
-            figure = f"{round(float(figure), self.digits) + 0.0:.{self.digits}f}"
+            figure = plain(figure, self.digits)
         return f"{self.said.format(figure)}, {wanted}"
 
 

@@ -1,4 +1,4 @@
-"""What a run is asked to do: the scenario file as typed, validated, immutable models.
+"""What a run is asked to do: the scenario file as typed, validated models, and its JSON Schema.
 
 Metres, seconds and radians throughout; the arena's lower left corner is the origin, x to the
 right and y up (REP 103). Geometry that only makes sense together (overlaps, walls) is checked in
@@ -24,6 +24,7 @@ from pydantic import (
     field_serializer,
     model_validator,
 )
+from pydantic.json_schema import models_json_schema
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, settings_for
@@ -41,7 +42,13 @@ from fuzzyq_bullet.quantities import (
 )
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel, robot_model, robot_names
 from fuzzyq_bullet.robots.base import Acceleration, MaxSpeed, MaxTurnRate, TurnAcceleration
-from fuzzyq_bullet.scenario.expectations import ANY_NAME, AnyExpect, Expect, OutcomeName
+from fuzzyq_bullet.scenario.expectations import (
+    ANY_NAME,
+    AnyExpect,
+    Expect,
+    OutcomeName,
+    expect_model,
+)
 from fuzzyq_bullet.scenario.layouts import AnyLayout, Random
 from fuzzyq_bullet.sensors.base import SENSORS, AnySensor, ExactSensor, SensorModel
 from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
@@ -139,6 +146,7 @@ def _default_planner() -> PlannerSettings:
 
 _AT_REST = STILL.model_dump()
 _LONGEST_NAME = 100
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def _choose_planner(value: Any, info: ValidationInfo) -> Any:
@@ -227,6 +235,40 @@ class Scenario(Model):
         return math.atan2(dy, dx)
 
 
+def scenario_schema() -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of a scenario file.
+
+    ``planner`` accepts a registered name, or the settings of a registered planner; only those of
+    the default planner may leave out the name. What takes geometry to see (``scenario.checks``) is
+    not in it.
+    """
+    models = [(Scenario, "validation"), *((settings_for(n), "validation") for n in planner_names())]
+    places, together = models_json_schema(models)  # type: ignore[arg-type]
+    definitions = together["$defs"]
+    choices: list[dict[str, Any]] = [
+        {"type": "string", "enum": list(planner_names())},
+        {"type": "null"},
+    ]
+    for name in planner_names():
+        reference = places[(settings_for(name), "validation")]
+        settings = definitions[reference["$ref"].rsplit("/", 1)[-1]]
+        required = set(settings.get("required", ())) - {"name"}
+        if name != DEFAULT_PLANNER:
+            required.add("name")
+        settings["required"] = sorted(required)
+        choices.append(reference)
+    scenario = definitions.pop("Scenario")
+    planner = scenario["properties"]["planner"]
+    scenario["properties"]["planner"] = {
+        "title": "Planner",
+        "description": planner.get("description", ""),
+        "anyOf": choices,
+    }
+    definitions["Expect"] = expect_model().model_json_schema()
+    definitions.pop("PlannerSettings", None)
+    return {"$schema": _DIALECT, **scenario, "title": "Scenario", "$defs": definitions}
+
+
 __all__ = [
     "ANY_NAME",
     "MAX_OBSTACLES",
@@ -247,4 +289,5 @@ __all__ = [
     "Robot",
     "Scenario",
     "Start",
+    "scenario_schema",
 ]

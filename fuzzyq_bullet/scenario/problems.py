@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from pydantic import BaseModel, ValidationError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner_names, settings_for
-from fuzzyq_bullet.quantities import ANGLE_KEYS
-from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.quantities import ANGLE_KEYS, ModelRegistry
 from fuzzyq_bullet.robots import no_robot
 from fuzzyq_bullet.scenario.expectations import expect_model
 from fuzzyq_bullet.scenario.layouts import LAYOUTS

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from fuzzyq_bullet.errors import SensorError
-from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.quantities import ModelRegistry
 from fuzzyq_bullet.wording import error_in_words
 
 Floats: TypeAlias = NDArray[np.float64]

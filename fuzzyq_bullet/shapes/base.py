@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from fuzzyq_bullet.quantities import DECIMALS, Model, Point
-from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.quantities import DECIMALS, Model, ModelRegistry, Point
 from fuzzyq_bullet.shapes.motion import STILL, AnyMotion
 
 if TYPE_CHECKING:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal, NamedTuple, TypeAlias, TypeVar
 
-from fuzzyq_bullet.quantities import Model
-from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.quantities import Model, ModelRegistry
 
 
 class Pose(NamedTuple):

@@ -3,6 +3,7 @@
 A study of one's own is a class with ``@register_study`` in a file that ``--plugin`` loads.
 """
 
+from fuzzyq_bullet.studies.episodes import Environment, Row
 from fuzzyq_bullet.studies.options import (
     PAPER,
     counts_of,
@@ -14,7 +15,6 @@ from fuzzyq_bullet.studies.options import (
 )
 from fuzzyq_bullet.studies.plan import FieldsPlan, Plan
 from fuzzyq_bullet.studies.registry import register_study, study_names, study_of
-from fuzzyq_bullet.studies.runner.episodes import Environment, Row
 from fuzzyq_bullet.studies.study import Findings, Picture, Results, Stage, Study, Swept, Table
 
 __all__ = [

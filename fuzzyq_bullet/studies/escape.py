@@ -12,10 +12,10 @@ from pydantic import Field
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.scenario import Drive, Limits, Robot
+from fuzzyq_bullet.studies.episodes import Environment, Row
 from fuzzyq_bullet.studies.options import counts_of, drives_of, planner_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, PlannerDescription, Seed
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.runner.episodes import Environment, Row
 from fuzzyq_bullet.studies.study import (
     Findings,
     Results,

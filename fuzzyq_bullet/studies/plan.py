@@ -10,7 +10,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.scenario import Drive, Limits
-from fuzzyq_bullet.studies.runner.episodes import Environment, Job, Key, Row
+from fuzzyq_bullet.studies.episodes import Environment, Job, Key, Row
 from fuzzyq_bullet.version import __version__
 
 M_S = 3000

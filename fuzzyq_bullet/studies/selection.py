@@ -19,8 +19,8 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, STEPS, TURNS, Weights
 from fuzzyq_bullet.scenario import Drive, Limits
+from fuzzyq_bullet.studies.episodes import Environment, Row
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
-from fuzzyq_bullet.studies.runner.episodes import Environment, Row
 from fuzzyq_bullet.studies.statistics import by_planner, feasible_runs
 from fuzzyq_bullet.studies.study import Stage
 from fuzzyq_bullet.training.registry import recipe_of

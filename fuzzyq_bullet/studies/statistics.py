@@ -16,7 +16,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.studies.runner.episodes import Row
+from fuzzyq_bullet.studies.episodes import Row
 
 Floats: TypeAlias = NDArray[np.float64]
 ByPlanner: TypeAlias = Mapping[str, Mapping[int, Row]]

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeAlias
 from pydantic import BaseModel, ConfigDict, Field
 
 from fuzzyq_bullet.planning import PlannerSettings
+from fuzzyq_bullet.studies.episodes import MOST_SEED, Place, Row
 from fuzzyq_bullet.studies.plan import FieldsPlan, Plan
-from fuzzyq_bullet.studies.runner.episodes import MOST_SEED, Place, Row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

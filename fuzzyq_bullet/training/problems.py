@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from fuzzyq_bullet.episode import Episode
-from fuzzyq_bullet.learning.linear import Features
+from fuzzyq_bullet.learning.learners import Features
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.world import World

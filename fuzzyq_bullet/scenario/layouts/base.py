@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, TypeAlias, TypeVar
 
-from fuzzyq_bullet.quantities import MAX_OBSTACLES, Model
-from fuzzyq_bullet.registry import ModelRegistry
+from fuzzyq_bullet.quantities import MAX_OBSTACLES, Model, ModelRegistry
 from fuzzyq_bullet.shapes import Obstacle
 
 if TYPE_CHECKING:

@@ -19,11 +19,11 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.scenario import Drive, Limits
+from fuzzyq_bullet.studies.episodes import MOST_RUNS, Environment
 from fuzzyq_bullet.studies.learning.table import LEARNED, summary_of, time_ratios
 from fuzzyq_bullet.studies.options import counts_of, hash_of, one_drive_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.runner.episodes import MOST_RUNS, Environment
 from fuzzyq_bullet.studies.selection import (
     HALF,
     ONE,

@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from fuzzyq_bullet.studies.runner.episodes import Row
+from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.statistics import (
     ByPlanner,
     Estimate,

@@ -21,10 +21,10 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import Limits, realise
+from fuzzyq_bullet.studies.episodes import Environment, Job, Row
 from fuzzyq_bullet.studies.report.found import Found
-from fuzzyq_bullet.studies.runner.episodes import Environment, Job, Row
-from fuzzyq_bullet.studies.runner.sweep import local_pool
 from fuzzyq_bullet.studies.success.table import by_planner
+from fuzzyq_bullet.studies.sweep import local_pool
 from fuzzyq_bullet.video import frame, record
 
 RULE = (

@@ -11,9 +11,9 @@ from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
+from fuzzyq_bullet.studies.episodes import Row, from_csv
 from fuzzyq_bullet.studies.registry import study_names, study_of
-from fuzzyq_bullet.studies.runner.episodes import Row, from_csv
-from fuzzyq_bullet.studies.runner.storage import MAX_BYTES, rows_in, settings_in
+from fuzzyq_bullet.studies.storage import MAX_BYTES, rows_in, settings_in
 from fuzzyq_bullet.studies.study import Study, Swept
 from fuzzyq_bullet.wording import shorten
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyq_bullet.fuzzy import paper_controller
-from fuzzyq_bullet.studies.speed.measurements import Row, interleaved, median_ratio
+from fuzzyq_bullet.studies.speed import Row, interleaved, median_ratio
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.inference import FuzzyController

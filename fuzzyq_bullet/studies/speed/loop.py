@@ -16,7 +16,7 @@ from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.scenario import Arena, Goal, Limits, Random, Scenario, Start, realise
-from fuzzyq_bullet.studies.speed.measurements import Row, interleaved, median_ratio
+from fuzzyq_bullet.studies.speed import Row, interleaved, median_ratio
 
 COUNTS = (125, 1000)
 """Numbers of obstacles that are compared."""

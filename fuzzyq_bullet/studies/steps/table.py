@@ -12,7 +12,7 @@ from statistics import fmean
 
 import numpy as np
 
-from fuzzyq_bullet.studies.runner.episodes import Row
+from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.statistics import (
     ByPlanner,
     Estimate,

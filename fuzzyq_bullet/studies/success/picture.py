@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fuzzyq_bullet.studies.runner.episodes import Row
+    from fuzzyq_bullet.studies.episodes import Row
     from fuzzyq_bullet.studies.statistics import Share
     from fuzzyq_bullet.studies.success.table import Line, Summary
 

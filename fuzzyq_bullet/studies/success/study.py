@@ -10,10 +10,10 @@ from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
+from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.options import PAPER, counts_of, described, one_drive_of, planners_of
 from fuzzyq_bullet.studies.plan import FieldsPlan
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.runner.episodes import Row
 from fuzzyq_bullet.studies.study import Findings, Picture, Results, Study, Table, cell, numbers
 from fuzzyq_bullet.studies.success.table import (
     Line,

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fuzzyq_bullet.studies.episodes import Place, Row
 from fuzzyq_bullet.studies.options import in_order
-from fuzzyq_bullet.studies.runner.episodes import Place, Row
 from fuzzyq_bullet.studies.statistics import Share, share
 
 

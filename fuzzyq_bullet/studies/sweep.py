@@ -17,8 +17,8 @@ from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.scenario import realise
-from fuzzyq_bullet.studies.runner.episodes import Job, Row, as_csv
-from fuzzyq_bullet.studies.runner.storage import Folder, Journal
+from fuzzyq_bullet.studies.episodes import Job, Row, as_csv
+from fuzzyq_bullet.studies.storage import Folder, Journal
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.workers import Answer, Pool, WorkerPool
 

@@ -21,7 +21,7 @@ from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes, writable_folder, write_text, written_beside
-from fuzzyq_bullet.studies.runner.episodes import Row
+from fuzzyq_bullet.studies.episodes import Row
 
 MAX_SETTINGS = 10_000_000
 """Largest file of settings that is read (bytes)."""
