@@ -162,9 +162,7 @@ def alone_at(path: Path) -> Iterator[None]:
     Raises:
         UserError: If another process holds it.
     """
-    try:
-        import fcntl
-    except ImportError:  # Windows
+    if not hasattr(os, "O_NOFOLLOW"):  # Windows
         yield
         return
     lock = path.with_name(f".{path.name}.lock")
@@ -173,14 +171,8 @@ def alone_at(path: Path) -> Iterator[None]:
     except OSError as error:
         raise UserError(f"{lock}: cannot be written: {error.strerror or error}") from error
     try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            raise UserError(
-                f"{path}: another process is at work on it; use another --out"
-            ) from error
-        except OSError:  # a file system without locks
-            pass
+        if not take_lock(descriptor):
+            raise UserError(f"{path}: another process is at work on it; use another --out")
         try:
             yield
         finally:
@@ -189,6 +181,24 @@ def alone_at(path: Path) -> Iterator[None]:
                     lock.unlink()  # while it is still held: who comes later makes a new one
     finally:
         os.close(descriptor)
+
+
+def take_lock(descriptor: int) -> bool:
+    """Lock an open file until it is closed; False if another process has.
+
+    Where the system or the file's folder knows no locks, nobody has.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return True
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True
 
 
 def _part(path: Path) -> Path:

@@ -22,7 +22,8 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.geometry import Field as Obstacles
 from fuzzyq_bullet.planning.decision import FIELDS, Decision
-from fuzzyq_bullet.scenario.models import ANY_NAME, Scenario
+from fuzzyq_bullet.scenario.expectations import ANY_NAME
+from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import unknown_names
 from fuzzyq_bullet.untrusted import read_arrays
 from fuzzyq_bullet.version import __version__

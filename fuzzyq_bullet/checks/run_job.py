@@ -68,13 +68,7 @@ def run_job(job: Job) -> Verdict:
 
 @dataclass(frozen=True)
 class ScenarioRun:
-    """What came of a scenario that a test ran.
-
-    Attributes:
-        trajectory: The record of the run.
-        result: Its figures.
-        verdict: What ``fuzzyq check`` would say.
-    """
+    """What came of a scenario that a test ran: record, figures, what ``fuzzyq check`` would say."""
 
     trajectory: Trajectory
     result: Result

@@ -29,13 +29,7 @@ if TYPE_CHECKING:
 
 
 class Mark(NamedTuple):
-    """How an episode is drawn that ended in one of the ways.
-
-    Attributes:
-        shape: matplotlib's name of the mark.
-        colour: Its colour.
-        words: What the legend says.
-    """
+    """How an episode is drawn: matplotlib's name of the mark, colour, words of the legend."""
 
     shape: str
     colour: str

@@ -45,12 +45,7 @@ _TITLE = 0.52
 
 
 class Panel(NamedTuple):
-    """One panel of a figure.
-
-    Attributes:
-        scenario: Name of the bundled scenario that is run.
-        words: What it shows, in a few words.
-    """
+    """One panel of a figure: the bundled scenario that is run, and what it shows."""
 
     scenario: str
     words: str
@@ -75,13 +70,7 @@ class Grid(NamedTuple):
 
 
 class RunsFigure(NamedTuple):
-    """A figure made of runs.
-
-    Attributes:
-        name: Of its file.
-        panels: The scenarios that are run, in physics.
-        grid: How they are arranged.
-    """
+    """A figure made of runs: name of its file, scenarios that are run, and their arrangement."""
 
     name: str
     panels: tuple[Panel, ...]

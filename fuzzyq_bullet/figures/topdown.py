@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, Polygon
 
 from fuzzyq_bullet.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.scenario.models import Obstacle
+from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.video.footprints import arrow
 
 if TYPE_CHECKING:
@@ -24,13 +24,7 @@ if TYPE_CHECKING:
 
 
 class Stroke(NamedTuple):
-    """How a stretch of the path is drawn.
-
-    Attributes:
-        colour: Its colour.
-        width: Width (points).
-        words: What the legend says.
-    """
+    """How a stretch of the path is drawn: colour, width (points), words of the legend."""
 
     colour: str
     width: float

@@ -16,22 +16,46 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
 from fuzzyq_bullet.ground_truth.search import is_connected, shortest_route
 from fuzzyq_bullet.ground_truth.tangent_graph import Route
-from fuzzyq_bullet.scenario.models import Arena, Obstacle, Point, Scenario
-from fuzzyq_bullet.shapes import GRAZE
-
-if TYPE_CHECKING:
-    from typing import TypeAlias
-
-    Key: TypeAlias = tuple[tuple[Obstacle, ...], Arena, Point, Point, float, float]
+from fuzzyq_bullet.quantities import Point
+from fuzzyq_bullet.scenario.models import Arena, Scenario
+from fuzzyq_bullet.shapes import GRAZE, Obstacle
 
 _REMEMBERED = 128
 """Worlds whose answers are kept: a sweep asks for each world once for every planner."""
+
+
+class _Question(NamedTuple):
+    """All that an answer depends on."""
+
+    obstacles: tuple[Obstacle, ...]
+    arena: Arena
+    start: Point
+    goal: Point
+    goal_radius: float
+    radius: float
+
+    @classmethod
+    def of(cls, scenario: Scenario, radius: float | None) -> _Question:
+        radius = scenario.robot.radius if radius is None else radius
+        if scenario.random is not None:
+            raise ValueError(
+                f"{scenario.name}: obstacles are still to be drawn; use realise() first"
+            )
+        if not (math.isfinite(radius) and radius > 2 * GRAZE):
+            raise ValueError(f"the radius must be positive and finite, got {radius}")
+        start, goal = scenario.start, scenario.goal
+        return cls(
+            scenario.obstacles, scenario.arena, start.position, goal.position, goal.radius, radius
+        )
+
+    def space(self) -> ConfigurationSpace:
+        return ConfigurationSpace(Field.of(self.obstacles, self.arena), self.radius)
 
 
 def shortest_path(scenario: Scenario, radius: float | None = None) -> Route | None:
@@ -50,7 +74,7 @@ def shortest_path(scenario: Scenario, radius: float | None = None) -> Route | No
     Raises:
         ValueError: If obstacles are still to be drawn, or ``radius`` is not positive and finite.
     """
-    return _route(*_key(scenario, radius))
+    return _route(_Question.of(scenario, radius))
 
 
 def feasible(scenario: Scenario, radius: float | None = None) -> bool:
@@ -65,7 +89,7 @@ def feasible(scenario: Scenario, radius: float | None = None) -> bool:
     Raises:
         ValueError: As ``shortest_path``.
     """
-    return _is_feasible(*_key(scenario, radius))
+    return _is_feasible(_Question.of(scenario, radius))
 
 
 def spl(success: bool, shortest: float, driven: float) -> float:
@@ -85,48 +109,14 @@ def spl(success: bool, shortest: float, driven: float) -> float:
     return shortest / longest if longest > 0.0 else 1.0
 
 
-def _key(scenario: Scenario, radius: float | None) -> Key:
-    radius = scenario.robot.radius if radius is None else radius
-    if scenario.random is not None:
-        raise ValueError(f"{scenario.name}: obstacles are still to be drawn; use realise() first")
-    if not (math.isfinite(radius) and radius > 2 * GRAZE):
-        raise ValueError(f"the radius must be positive and finite, got {radius}")
-    return (
-        scenario.obstacles,
-        scenario.arena,
-        scenario.start.position,
-        scenario.goal.position,
-        scenario.goal.radius,
-        radius,
-    )
-
-
-def _space(obstacles: tuple[Obstacle, ...], arena: Arena, radius: float) -> ConfigurationSpace:
-    return ConfigurationSpace(Field.of(obstacles, arena), radius)
+@lru_cache(maxsize=_REMEMBERED)
+def _route(asked: _Question) -> Route | None:
+    return shortest_route(asked.space(), asked.start, asked.goal, asked.goal_radius)
 
 
 @lru_cache(maxsize=_REMEMBERED)
-def _route(
-    obstacles: tuple[Obstacle, ...],
-    arena: Arena,
-    start: Point,
-    goal: Point,
-    goal_radius: float,
-    radius: float,
-) -> Route | None:
-    return shortest_route(_space(obstacles, arena, radius), start, goal, goal_radius)
-
-
-@lru_cache(maxsize=_REMEMBERED)
-def _is_feasible(
-    obstacles: tuple[Obstacle, ...],
-    arena: Arena,
-    start: Point,
-    goal: Point,
-    goal_radius: float,
-    radius: float,
-) -> bool:
-    return is_connected(_space(obstacles, arena, radius), start, goal, goal_radius)
+def _is_feasible(asked: _Question) -> bool:
+    return is_connected(asked.space(), asked.start, asked.goal, asked.goal_radius)
 
 
 __all__ = ["GRAZE", "Route", "feasible", "shortest_path", "spl"]

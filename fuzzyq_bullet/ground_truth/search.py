@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from fuzzyq_bullet.geometry import Floats
     from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
-    from fuzzyq_bullet.scenario.models import Point
+    from fuzzyq_bullet.quantities import Point
 
     Ints: TypeAlias = NDArray[np.intp]
     Pairs: TypeAlias = tuple[Ints, Ints]

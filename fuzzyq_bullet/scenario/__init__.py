@@ -1,5 +1,6 @@
 """What a run is asked to do: models, files, checks, layouts."""
 
+from fuzzyq_bullet.quantities import MAX_OBSTACLES, MIN_RADIUS
 from fuzzyq_bullet.scenario.checks import check, find_conflicts
 from fuzzyq_bullet.scenario.expectations import Expect, OutcomeName, register_expectation
 from fuzzyq_bullet.scenario.files import (
@@ -10,18 +11,12 @@ from fuzzyq_bullet.scenario.files import (
     parse_scenario,
     save_scenario,
 )
-from fuzzyq_bullet.scenario.layouts import realise
+from fuzzyq_bullet.scenario.layouts import Random, realise
 from fuzzyq_bullet.scenario.models import (
-    MAX_OBSTACLES,
-    MIN_RADIUS,
     Arena,
-    Box,
-    Cylinder,
     Drive,
     Goal,
     Limits,
-    Obstacle,
-    Random,
     Robot,
     Scenario,
     Start,
@@ -29,6 +24,7 @@ from fuzzyq_bullet.scenario.models import (
 )
 from fuzzyq_bullet.scenario.options import with_options
 from fuzzyq_bullet.scenario.random_tasks import random_task
+from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
 __all__ = [
     "MAX_OBSTACLES",

@@ -15,8 +15,9 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.scenario.layouts.placing import separated
-from fuzzyq_bullet.scenario.models import Obstacle, Scenario
+from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import MAX_SHOWN, Loc, key_path
+from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.shapes.motion import STILL
 
 Conflict: TypeAlias = tuple[Loc, str]

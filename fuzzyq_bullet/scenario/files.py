@@ -15,8 +15,9 @@ from fuzzyq_bullet.files import read_bytes, written_beside
 from fuzzyq_bullet.planning.registry import make_planner
 from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.platforms import data_folder
+from fuzzyq_bullet.quantities import MAX_OBSTACLES
 from fuzzyq_bullet.scenario.checks import find_conflicts
-from fuzzyq_bullet.scenario.models import MAX_OBSTACLES, Scenario
+from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import (
     MAX_SHOWN,
     MAX_WORDED,

@@ -31,7 +31,6 @@ from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, sett
 from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.quantities import (
     MAX_OBSTACLES,
-    MIN_RADIUS,
     Angle,
     Count,
     Flag,
@@ -46,12 +45,11 @@ from fuzzyq_bullet.scenario.expectations import (
     ANY_NAME,
     AnyExpect,
     Expect,
-    OutcomeName,
     expect_model,
 )
-from fuzzyq_bullet.scenario.layouts import AnyLayout, Random
+from fuzzyq_bullet.scenario.layouts import AnyLayout
 from fuzzyq_bullet.sensors.base import SENSORS, AnySensor, ExactSensor, SensorModel
-from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
+from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.shapes.motion import STILL
 
 Drive: TypeAlias = Literal["wheels", "kinematic"]
@@ -267,27 +265,3 @@ def scenario_schema() -> dict[str, Any]:
     definitions["Expect"] = expect_model().model_json_schema()
     definitions.pop("PlannerSettings", None)
     return {"$schema": _DIALECT, **scenario, "title": "Scenario", "$defs": definitions}
-
-
-__all__ = [
-    "ANY_NAME",
-    "MAX_OBSTACLES",
-    "MIN_RADIUS",
-    "Angle",
-    "Arena",
-    "Box",
-    "Cylinder",
-    "Drive",
-    "Expect",
-    "Goal",
-    "Limits",
-    "Model",
-    "Obstacle",
-    "OutcomeName",
-    "Point",
-    "Random",
-    "Robot",
-    "Scenario",
-    "Start",
-    "scenario_schema",
-]

@@ -104,11 +104,7 @@ class Escape(Study):
         return {self.planner: planner_of(self.planner, self.weights)}
 
     def plan(self) -> EscapePlan:
-        """Return what is run.
-
-        Raises:
-            UserError: If an option is wrong, or nothing is asked for.
-        """
+        """Return what is run; asking for nothing is a mistake too."""
         (settings,) = self.planner_set().values()
         plan = EscapePlan(
             sweep=self.name,
@@ -227,15 +223,7 @@ class Figures:
 
 @dataclass(frozen=True)
 class Target:
-    """What a figure should be.
-
-    Attributes:
-        what: Which figure.
-        drive: With which drive.
-        figure: What it is; None where there was nothing to measure.
-        bound: What it should be.
-        sense: Whether it should be just that, or at most.
-    """
+    """What a figure should be with a drive; it is None where there was nothing to measure."""
 
     what: str
     drive: str

@@ -14,13 +14,12 @@ import stat
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 from typing import Any, BinaryIO
 
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.files import read_bytes, writable_folder, write_text, written_beside
+from fuzzyq_bullet.files import read_bytes, take_lock, writable_folder, write_text, written_beside
 from fuzzyq_bullet.studies.episodes import Row
 
 MAX_SETTINGS = 10_000_000
@@ -184,7 +183,8 @@ class Journal:
     def __enter__(self) -> Journal:
         try:
             self._file = file = self._opened()
-            self._lock(file)
+            if not take_lock(file.fileno()):
+                raise UserError(f"{self._path.parent}: another sweep is at work in it")
             file.seek(0)
             text = file.read()
             whole = text[: text.rfind(b"\n") + 1]
@@ -222,30 +222,13 @@ class Journal:
         except OSError as error:
             raise self._problem(error) from error
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        where: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._close()
 
     def _close(self) -> None:
         if self._file is not None:
             with suppress(OSError):  # what could not be written has been told
                 self._file.close()
-
-    def _lock(self, file: BinaryIO) -> None:
-        try:
-            import fcntl
-        except ImportError:  # Windows
-            return
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            raise UserError(f"{self._path.parent}: another sweep is at work in it") from error
-        except OSError:  # a file system without locks
-            pass
 
     def _problem(self, error: OSError) -> UserError:
         return UserError(f"{self._path}: cannot be written: {error.strerror or error}")

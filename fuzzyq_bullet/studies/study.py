@@ -84,13 +84,7 @@ class Table:
 
 
 class Picture(NamedTuple):
-    """A picture.
-
-    Attributes:
-        draw: Makes it.
-        alt: What it shows, for those who do not see it.
-        caption: What stands below.
-    """
+    """A picture: what makes it, what it shows for those who do not see it, what stands below."""
 
     draw: Callable[[], Figure]
     alt: str

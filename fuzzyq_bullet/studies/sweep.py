@@ -37,12 +37,7 @@ Progress: TypeAlias = Callable[["State"], None]
 
 @dataclass(frozen=True)
 class Done:
-    """A finished job.
-
-    Attributes:
-        row: What it came to.
-        record: The contents of a record (``.npz``) of a run that failed although there was a way.
-    """
+    """The row of a finished job; the record (``.npz``) of a run that failed, though it had a way."""
 
     row: Row
     record: bytes | None = None
@@ -120,13 +115,7 @@ class State:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A finished sweep.
-
-    Attributes:
-        rows: All rows, sorted by key.
-        table: The CSV that holds them.
-        state: How it went.
-    """
+    """A finished sweep: all rows sorted by key, the CSV that holds them, and how it went."""
 
     rows: tuple[Row, ...]
     table: Path

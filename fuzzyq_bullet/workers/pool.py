@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Protocol, TypeAlias
 
 from fuzzyq_bullet.errors import UserError
@@ -105,14 +104,7 @@ class WorkerPool:
         timeout: float = TIMEOUT,
         memory_mb: int = MEMORY_MB,
     ) -> None:
-        """Make a pool; nothing is started yet.
-
-        Args:
-            workers: Most at a time; None for one a core.
-            plugins: Modules that each imports first.
-            timeout: Wall-clock time (s) after which an order is cut.
-            memory_mb: Memory (MB) that each may use.
-        """
+        """Make a pool of so many workers at most, None for one a core; nothing is started yet."""
         self.plugins = tuple(plugins)
         self.timeout = timeout
         self.memory_mb = memory_mb
@@ -124,12 +116,7 @@ class WorkerPool:
     def __enter__(self) -> WorkerPool:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:

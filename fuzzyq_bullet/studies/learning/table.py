@@ -82,13 +82,7 @@ class Figures:
 
 @dataclass(frozen=True)
 class Line:
-    """One line of the first table.
-
-    Attributes:
-        role: What the planner is there for, such as ``best pair``.
-        planner: What the rows call it.
-        figures: What it came to.
-    """
+    """A line of the first table: what a planner is there for, what rows call it, its figures."""
 
     role: str
     planner: str
@@ -168,14 +162,7 @@ class AtCount:
 
 @dataclass(frozen=True)
 class Target:
-    """What a figure should be.
-
-    Attributes:
-        what: Which figure.
-        figure: What it is; None where there was nothing to measure.
-        bound: What it should be.
-        sense: On which side of it.
-    """
+    """What a figure should be; it is None where there was nothing to measure."""
 
     what: str
     figure: float | None

@@ -29,13 +29,7 @@ Films = Mapping[str, Mapping[str, Film]]
 
 @dataclass(frozen=True)
 class Section:
-    """A section of the page.
-
-    Attributes:
-        name: What links call it.
-        title: Its heading.
-        body: What it holds.
-    """
+    """A section of the page: what links call it, its heading, and what it holds."""
 
     name: str
     title: str

@@ -40,13 +40,7 @@ Counts: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.int64]]"
 
 
 class Look(NamedTuple):
-    """How a planner is drawn.
-
-    Attributes:
-        colour: Its colour.
-        mark: matplotlib's name of the mark.
-        dashes: Of its line.
-    """
+    """How a planner is drawn: colour, matplotlib's name of the mark, dashes of the line."""
 
     colour: str
     mark: str

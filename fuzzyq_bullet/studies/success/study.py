@@ -65,11 +65,7 @@ class Success(Study):
         return planners_of(self.planners)
 
     def plan(self) -> FieldsPlan:
-        """Return what is run.
-
-        Raises:
-            UserError: If an option is wrong.
-        """
+        """Return what is run."""
         counts = counts_of(self.counts, "--counts")
         if not counts:
             raise UserError("--counts: none leaves nothing to run")

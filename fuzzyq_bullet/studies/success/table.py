@@ -52,12 +52,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Claim:
-    """An order that the paper reports.
-
-    Attributes:
-        what: It, in words.
-        reproduced: Whether it is seen here too, over all counts together.
-    """
+    """An order that the paper reports, and whether it is seen here, over all counts together."""
 
     what: str
     reproduced: bool
@@ -143,13 +138,7 @@ def _claims(total: Line) -> tuple[Claim, ...]:
 
 @dataclass(frozen=True)
 class Quartiles:
-    """Where the middle half of some figures lies.
-
-    Attributes:
-        low: A quarter of them is below.
-        middle: The median.
-        high: A quarter is above.
-    """
+    """Where the middle half of some figures lies: lower quartile, median, upper quartile."""
 
     low: float
     middle: float
