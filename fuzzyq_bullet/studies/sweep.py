@@ -37,7 +37,7 @@ Progress: TypeAlias = Callable[["State"], None]
 
 @dataclass(frozen=True)
 class Done:
-    """The row of a finished job; the record (``.npz``) of a run that failed, though it had a way."""
+    """The row of a finished job; the record (``.npz``) of a run that failed with a way."""
 
     row: Row
     record: bytes | None = None

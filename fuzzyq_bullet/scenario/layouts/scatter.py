@@ -28,6 +28,7 @@ from fuzzyq_bullet.quantities import (
     Number,
 )
 from fuzzyq_bullet.scenario.layouts.base import Conflict, Layout, register_layout, too_many
+from fuzzyq_bullet.scenario.layouts.placing import kept_clear
 from fuzzyq_bullet.shapes import Cylinder
 
 if TYPE_CHECKING:
@@ -57,10 +58,6 @@ class Random(Layout):
     )
     overlap: Flag = Given(default=True, description="Whether obstacles may overlap one another.")
 
-    def draw(self, scenario: Scenario, rng: np.random.Generator) -> tuple[Cylinder, ...]:
-        """Draw the cylinders, exactly as many."""
-        return scatter(scenario, self, rng)
-
     def conflicts(self, scenario: Scenario) -> list[Conflict]:
         """Return what is too large for the arena or too many."""
         if self.count == 0:
@@ -72,89 +69,63 @@ class Random(Layout):
             found.append((("radius",), message))
         return found + too_many(scenario, self.count)
 
-
-def scatter(scenario: Scenario, wanted: Random, rng: np.random.Generator) -> tuple[Cylinder, ...]:
-    """Draw cylinders at random places, exactly as many as wanted.
-
-    Args:
-        scenario: Its start, goal, arena and listed obstacles are heeded.
-        wanted: How many, and how.
-        rng: Where the places come from.
-
-    Raises:
-        UserError: If so many cannot be placed.
-    """
-    if wanted.count == 0:
-        return ()
-    if len(scenario.obstacles) + wanted.count > MAX_OBSTACLES:
-        raise UserError(
-            f"{scenario.name}: random.count: with the listed obstacles it makes more than "
-            f"{MAX_OBSTACLES}"
+    def draw(self, scenario: Scenario, rng: np.random.Generator) -> tuple[Cylinder, ...]:
+        """Draw the cylinders, exactly as many."""
+        places = np.empty((0, 2))
+        idle = batches = 0
+        hopeless = not self.overlap and self._too_dense(scenario.arena.size)
+        while len(places) < self.count:
+            if hopeless or idle > _MAX_IDLE or batches > _MAX_IDLE + self.count // 20:
+                raise UserError(
+                    f"{scenario.name}: random.count: cannot place {self.count} obstacles of radius "
+                    f"{self.radius:g} in {scenario.arena.size[0]:g} × {scenario.arena.size[1]:g} m "
+                    "clear of start and goal; use fewer, smaller ones or a smaller margin"
+                    + ("" if self.overlap else ", or allow overlap")
+                )
+            fresh = self._free_of_one_another(self._batch(scenario, rng), places)
+            places = np.concatenate([places, fresh])
+            idle = 0 if len(fresh) else idle + 1
+            batches += 1
+        return tuple(
+            Cylinder(shape="cylinder", position=(x, y), radius=self.radius)
+            for x, y in places[: self.count].tolist()
         )
-    places = np.empty((0, 2))
-    idle = batches = 0
-    hopeless = not wanted.overlap and _too_dense(wanted, scenario.arena.size)
-    while len(places) < wanted.count:
-        if hopeless or idle > _MAX_IDLE or batches > _MAX_IDLE + wanted.count // 20:
-            raise UserError(
-                f"{scenario.name}: random.count: cannot place {wanted.count} obstacles of radius "
-                f"{wanted.radius:g} in {scenario.arena.size[0]:g} × {scenario.arena.size[1]:g} m "
-                "clear of start and goal; use fewer, smaller ones or a smaller margin"
-                + ("" if wanted.overlap else ", or allow overlap")
-            )
-        fresh = _free_of_one_another(_draw(scenario, wanted, rng), places, wanted)
-        places = np.concatenate([places, fresh])
-        idle = 0 if len(fresh) else idle + 1
-        batches += 1
-    return tuple(
-        Cylinder(shape="cylinder", position=(x, y), radius=wanted.radius)
-        for x, y in places[: wanted.count].tolist()
-    )
 
+    def _batch(self, scenario: Scenario, rng: np.random.Generator) -> Floats:
+        """Draw places at once; return, shape (K, 2), those that suit the arena, start and goal."""
+        size = np.array(scenario.arena.size)
+        r = self.radius
+        low, high = np.minimum(r, size / 2), np.maximum(size - r, size / 2)
+        drawn = rng.uniform(low, high, (_BATCH, 2)).round(DECIMALS)
+        fits = np.all((drawn >= r - TOUCH) & (drawn <= size - r + TOUCH), axis=1)
+        for centre, radius in kept_clear(scenario, self.margin):
+            fits &= np.linalg.norm(drawn - centre, axis=1) > r + radius
+        places: Floats = drawn[fits]
+        if not self.overlap and scenario.obstacles:
+            places = places[Field.of(scenario.obstacles).clearance(places) >= r]
+        return places
 
-def _draw(scenario: Scenario, wanted: Random, rng: np.random.Generator) -> Floats:
-    """Draw one batch; return, shape (K, 2), the places that suit the arena, start and goal."""
-    size = np.array(scenario.arena.size)
-    r = wanted.radius
-    low, high = np.minimum(r, size / 2), np.maximum(size - r, size / 2)
-    drawn = rng.uniform(low, high, (_BATCH, 2)).round(DECIMALS)
-    fits = np.all((drawn >= r - TOUCH) & (drawn <= size - r + TOUCH), axis=1)
-    robot = scenario.robot.radius
-    kept_clear = (
-        (scenario.start.position, robot),
-        (scenario.goal.position, max(scenario.goal.radius, robot)),
-    )
-    for centre, radius in kept_clear:
-        apart = np.linalg.norm(drawn - centre, axis=1)
-        fits &= apart > r + radius + wanted.margin + 2 * TOUCH
-    places: Floats = drawn[fits]
-    if not wanted.overlap and scenario.obstacles:
-        places = places[Field.of(scenario.obstacles).clearance(places) >= r]
-    return places
+    def _free_of_one_another(self, drawn: Floats, places: Floats) -> Floats:
+        """Return those of ``drawn`` that overlap neither ``places`` nor an earlier one of them."""
+        if self.overlap or not len(drawn):
+            return drawn
+        from scipy.spatial import KDTree  # only who draws obstacles waits for it to load
 
+        if len(places):
+            nearest, _ = KDTree(places).query(drawn)
+            drawn = drawn[nearest >= 2 * self.radius]
+        if not len(drawn):
+            return drawn
+        keep = np.ones(len(drawn), dtype=bool)
+        pairs = KDTree(drawn).query_pairs(2 * self.radius, output_type="ndarray")
+        for first, second in sorted(map(tuple, pairs.tolist())):
+            if keep[first]:
+                keep[second] = False
+        kept: Floats = drawn[keep]
+        return kept
 
-def _free_of_one_another(drawn: Floats, places: Floats, wanted: Random) -> Floats:
-    """Return those of ``drawn`` that overlap neither ``places`` nor an earlier one of them."""
-    if wanted.overlap or not len(drawn):
-        return drawn
-    from scipy.spatial import KDTree  # only who draws obstacles waits for it to load
-
-    if len(places):
-        nearest, _ = KDTree(places).query(drawn)
-        drawn = drawn[nearest >= 2 * wanted.radius]
-    if not len(drawn):
-        return drawn
-    keep = np.ones(len(drawn), dtype=bool)
-    pairs = KDTree(drawn).query_pairs(2 * wanted.radius, output_type="ndarray")
-    for first, second in sorted(map(tuple, pairs.tolist())):
-        if keep[first]:
-            keep[second] = False
-    kept: Floats = drawn[keep]
-    return kept
-
-
-def _too_dense(wanted: Random, size: tuple[float, float]) -> bool:
-    """Tell whether discs without overlap would need more room than there is, however packed."""
-    # A strip of one radius around makes up for the discs at the edge (Oler's inequality).
-    width, depth = (side + 2 * wanted.radius for side in size)
-    return wanted.count * math.pi * wanted.radius**2 > _DENSEST * width * depth
+    def _too_dense(self, size: tuple[float, float]) -> bool:
+        """Tell whether discs without overlap would need more room than there is, however packed."""
+        # A strip of one radius around makes up for the discs at the edge (Oler's inequality).
+        width, depth = (side + 2 * self.radius for side in size)
+        return self.count * math.pi * self.radius**2 > _DENSEST * width * depth
