@@ -167,9 +167,9 @@ def test_an_installed_package_runs_away_from_the_checkout(elsewhere: Path, tmp_p
         return done.stdout
 
     code = (
-        "from fuzzyq_bullet import platforms as resources\n"
-        "print(resources.__file__)\n"
-        "print(resources.data_folder('assets'), resources.data_folder('scenarios'))"
+        "from fuzzyq_bullet import platforms\n"
+        "print(platforms.__file__)\n"
+        "print(platforms.data_folder('assets'), platforms.data_folder('scenarios'))"
     )
     for place in call("python", "-c", code).split():
         assert Path(place).is_relative_to(elsewhere)
