@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzyq_bullet.shapes.base import GRAZE, PARALLEL
+from fuzzyq_bullet.shapes.base import GRAZE, PARALLEL, Shape, ShapeGroup
 from fuzzyq_bullet.shapes.box import Boxes
 from fuzzyq_bullet.shapes.cylinder import Cylinders
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fuzzyq_bullet.shapes.base import Shape, ShapeGroup
 
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.intp]

@@ -7,14 +7,12 @@ pytest among them, need none of it. So whoever imports Gymnasium first, or last,
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from importlib.machinery import ModuleSpec
-    from types import ModuleType
+from types import ModuleType
+from typing import Any
 
 ENVIRONMENTS = {
     "fuzzyq_bullet/Navigation-v0": "fuzzyq_bullet.gym.navigation:NavigationEnv",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeAlias, TypeVar, get_args
+from collections.abc import Iterator
+from typing import Annotated, Any, Generic, TypeAlias, TypeVar, get_args
 
 from pydantic import (
     BaseModel,
@@ -14,9 +15,6 @@ from pydantic import (
     TypeAdapter,
 )
 from pydantic_core import core_schema
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 Number: TypeAlias = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 Coordinate: TypeAlias = Annotated[Number, Field(ge=-1000.0, le=1000.0)]

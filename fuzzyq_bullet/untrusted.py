@@ -6,17 +6,14 @@ import io
 import json
 import warnings
 import zipfile
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
 
 MAX_BYTES = 1 << 30
 """Most that an archive may unpack to; a million decisions, more than any run makes, take half."""

@@ -10,7 +10,6 @@ import os
 import traceback
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,10 +28,8 @@ from fuzzyq_bullet.scenario import (
 )
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
+from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.wording import error_in_words, plain
-
-if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
 
 OUT_OF_MEMORY = "ran out of the memory that it may use (--memory)"
 

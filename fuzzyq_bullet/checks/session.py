@@ -10,18 +10,16 @@ import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from fuzzyq_bullet.checks.baseline import Baselines
 from fuzzyq_bullet.checks.run_job import run_job
 from fuzzyq_bullet.checks.verdict import Job, Keep, Verdict, check_command, replay_command
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.outputs import refuse_other_run
 from fuzzyq_bullet.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from fuzzyq_bullet.checks.baseline import Baselines
-    from fuzzyq_bullet.workers import WorkerPool
+from fuzzyq_bullet.workers import WorkerPool
 
 FILM_TIMEOUT = 900.0
 """Wall-clock time (s) that one film may take."""

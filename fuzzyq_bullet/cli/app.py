@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import typer
 
@@ -19,9 +20,6 @@ from fuzzyq_bullet.cli import (
 from fuzzyq_bullet.cli.options import help_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.version import __version__
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 app = typer.Typer(
     name="fuzzyq",

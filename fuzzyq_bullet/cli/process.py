@@ -11,15 +11,13 @@ import os
 import signal
 import sys
 import time
+from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, NoReturn
+from types import FrameType
+from typing import NoReturn
 
 from fuzzyq_bullet.errors import Stopped, UserError, printable
 from fuzzyq_bullet.platforms import end_with
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from types import FrameType
 
 BAD_INPUT = 2
 _GRACE = 2.0

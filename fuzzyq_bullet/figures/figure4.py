@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,11 +12,7 @@ from fuzzyq_bullet.figures import MARK
 from fuzzyq_bullet.figures.style import save_png
 from fuzzyq_bullet.files import writable_folder
 from fuzzyq_bullet.fuzzy import FuzzyController, paper_controller
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from fuzzyq_bullet.fuzzy.sets import Floats, Variable
+from fuzzyq_bullet.fuzzy.sets import Floats, Variable
 
 POINTS = 61
 """Points along each input: enough for a smooth surface, few enough to draw at once."""

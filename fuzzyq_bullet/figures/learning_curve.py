@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, PercentFormatter
+from numpy.typing import NDArray
 
 from fuzzyq_bullet.figures.style import (
     BLUE,
@@ -18,14 +21,7 @@ from fuzzyq_bullet.figures.style import (
     new_figure,
     tidy,
 )
-from fuzzyq_bullet.learning.checkpoint import WINDOW, last_mean, reached
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from fuzzyq_bullet.learning.checkpoint import Curve
+from fuzzyq_bullet.learning.checkpoint import WINDOW, Curve, last_mean, reached
 
 
 class Mark(NamedTuple):

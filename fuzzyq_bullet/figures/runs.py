@@ -5,8 +5,12 @@ Each panel is a bundled scenario, run in physics and drawn from its record.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
@@ -17,17 +21,8 @@ from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
 from fuzzyq_bullet.files import writable_folder
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.platforms import data_folder
-from fuzzyq_bullet.scenario import load_scenario
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-
-    from fuzzyq_bullet.scenario import Scenario
-    from fuzzyq_bullet.trajectory import Trajectory
+from fuzzyq_bullet.scenario import Scenario, load_scenario
+from fuzzyq_bullet.trajectory import Trajectory
 
 ENDS = {
     "goal": "goal reached: {time:.1f} s, {way}{shortest}",

@@ -6,16 +6,13 @@ or a place, so that a picture can be read in grey.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from pathlib import Path
+from typing import Any, Literal
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fuzzyq_bullet.files import written_beside
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from matplotlib.axes import Axes
 
 INK = "#222222"
 GREY = "#7C828C"

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, Polygon
+from matplotlib.patches import Circle, Patch, Polygon
+from numpy.typing import NDArray
 
 from fuzzyq_bullet.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED
 from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.shapes import Obstacle
+from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video.footprints import arrow
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.patches import Patch
-    from numpy.typing import NDArray
-
-    from fuzzyq_bullet.trajectory import Trajectory
 
 
 class Stroke(NamedTuple):

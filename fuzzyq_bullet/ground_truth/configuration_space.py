@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from fuzzyq_bullet.geometry import Field, Floats
 from fuzzyq_bullet.shapes import GRAZE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 TOUCHES = 2 * GRAZE
 """``GRAZE`` for what was itself found to within ``GRAZE``."""

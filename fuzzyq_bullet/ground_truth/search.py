@@ -8,12 +8,14 @@ only gives an upper bound; the full one leaves out whatever no way as short can 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
 
-from fuzzyq_bullet.ground_truth.configuration_space import FreeArcs, free_arcs
+from fuzzyq_bullet.geometry import Floats, Ints
+from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace, FreeArcs, free_arcs
 from fuzzyq_bullet.ground_truth.tangent_graph import (
     Route,
     TangentGraph,
@@ -21,19 +23,9 @@ from fuzzyq_bullet.ground_truth.tangent_graph import (
     from_point,
     on_edge,
 )
+from fuzzyq_bullet.quantities import Point
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import TypeAlias
-
-    from numpy.typing import NDArray
-
-    from fuzzyq_bullet.geometry import Floats
-    from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
-    from fuzzyq_bullet.quantities import Point
-
-    Ints: TypeAlias = NDArray[np.intp]
-    Pairs: TypeAlias = tuple[Ints, Ints]
+Pairs: TypeAlias = tuple[Ints, Ints]
 
 _PAIRS = 50_000
 """Pairs of discs whose tangents are held in memory at once."""

@@ -5,23 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from fuzzyq_bullet.ground_truth.configuration_space import TOUCHES
-
-if TYPE_CHECKING:
-    from typing import TypeAlias
-
-    from numpy.typing import NDArray
-
-    from fuzzyq_bullet.geometry import Floats
-    from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace, FreeArcs
-
-    Ints: TypeAlias = NDArray[np.intp]
+from fuzzyq_bullet.geometry import Floats, Ints
+from fuzzyq_bullet.ground_truth.configuration_space import TOUCHES, ConfigurationSpace, FreeArcs
 
 _SAG = 0.0005
 """Farthest that a chord strays from a drawn arc (m)."""
@@ -55,8 +47,8 @@ class Tangents(NamedTuple):
         second_angle: Shape (T,): where on the second one's edge (rad).
     """
 
-    first: NDArray[np.intp]
-    second: NDArray[np.intp]
+    first: Ints
+    second: Ints
     first_angle: Floats
     second_angle: Floats
 
@@ -77,9 +69,7 @@ class Tangents(NamedTuple):
         )
 
 
-def between_discs(
-    world: ConfigurationSpace, first: NDArray[np.intp], second: NDArray[np.intp]
-) -> Tangents:
+def between_discs(world: ConfigurationSpace, first: Ints, second: Ints) -> Tangents:
     """Return all common tangents of pairs of discs, up to four for each pair.
 
     With n the direction from the first centre to where the line touches, the second disc is
@@ -100,7 +90,7 @@ def between_discs(
     return Tangents(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
 
 
-def from_point(world: ConfigurationSpace, point: Floats) -> tuple[NDArray[np.intp], Floats]:
+def from_point(world: ConfigurationSpace, point: Floats) -> tuple[Ints, Floats]:
     """Return the lines from a point, shape (2,), that touch discs.
 
     Returns:
@@ -114,7 +104,7 @@ def from_point(world: ConfigurationSpace, point: Floats) -> tuple[NDArray[np.int
     return np.concatenate([outside, outside]), angles
 
 
-def on_edge(world: ConfigurationSpace, disc: NDArray[np.intp], angle: Floats) -> Floats:
+def on_edge(world: ConfigurationSpace, disc: Ints, angle: Floats) -> Floats:
     """Return the points, shape (T, 2), at the angles (rad) on the discs' edges."""
     direction = np.column_stack([np.cos(angle), np.sin(angle)])
     points: Floats = world.centres[disc] + world.radii[disc, None] * direction

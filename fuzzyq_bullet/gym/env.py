@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Mapping
+from typing import Any, TypeAlias
 
 import gymnasium
 import numpy as np
@@ -17,16 +18,12 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.gym.tasks import TaskSource
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.world import World
+from fuzzyq_bullet.planning import Decision, Observation
+from fuzzyq_bullet.scenario import Robot, Scenario
 from fuzzyq_bullet.training.rewards import Reward
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video.map import Map
 from fuzzyq_bullet.video.timeline import Timeline, sensed_at
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fuzzyq_bullet.planning import Decision, Observation
-    from fuzzyq_bullet.scenario import Robot, Scenario
 
 Vector: TypeAlias = NDArray[np.float32]
 

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.drives.velocity_controller import Twist
+from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.gym.env import EpisodeEnv, goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
-from fuzzyq_bullet.planning import Decision
-
-if TYPE_CHECKING:
-    from fuzzyq_bullet.episode import Episode
-    from fuzzyq_bullet.planning import Observation
-    from fuzzyq_bullet.scenario import Scenario
+from fuzzyq_bullet.planning import Decision, Observation
+from fuzzyq_bullet.scenario import Scenario
 
 LINE_ANGLE = math.radians(45.0)
 """α: angle of the left and right detection lines from the middle one (rad)."""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
+
+import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.ground_truth import feasible
@@ -16,9 +18,6 @@ from fuzzyq_bullet.scenario import (
     with_options,
 )
 from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM
-
-if TYPE_CHECKING:
-    import numpy as np
 
 Count: TypeAlias = "int | tuple[int, int]"
 Source: TypeAlias = "Scenario | str | os.PathLike[str] | None"

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.gym.env import EpisodeEnv, goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
 from fuzzyq_bullet.planning import MODES, Decision
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings
-from fuzzyq_bullet.scenario import with_options
-
-if TYPE_CHECKING:
-    from fuzzyq_bullet.episode import Episode
-    from fuzzyq_bullet.scenario import Scenario
+from fuzzyq_bullet.scenario import Scenario, with_options
 
 _LEAST = {
     "left": 0.0,

@@ -8,16 +8,14 @@ one-hot features it is the same as a table.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.learning.schedules import TABLE_1
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 Floats: TypeAlias = NDArray[np.float64]
 TraceKind: TypeAlias = Literal["accumulating", "replacing"]

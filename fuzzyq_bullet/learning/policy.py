@@ -7,9 +7,10 @@ very same, so the same training gives the same bytes.
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
 from pydantic import (
@@ -25,12 +26,8 @@ from pydantic import (
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.learning.checkpoint import LARGEST
+from fuzzyq_bullet.learning.learners import Floats
 from fuzzyq_bullet.untrusted import read_object, shown
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fuzzyq_bullet.learning.learners import Floats
 
 FORMAT = 1
 MAX_BYTES = 4_000_000

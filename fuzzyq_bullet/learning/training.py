@@ -6,21 +6,18 @@ It can be interrupted anywhere and resumed exactly.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from pathlib import Path
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning.checkpoint import LARGEST, ROW, Checkpoint, Curve, Plain, is_sound
+from fuzzyq_bullet.learning.learners import Floats
 from fuzzyq_bullet.learning.schedules import EXPLORATION, LEARNING_RATE, TRACE_DECAY, Schedule
 from fuzzyq_bullet.version import __version__
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from pathlib import Path
-
-    from fuzzyq_bullet.learning.learners import Floats
 
 MAX_EPISODES = 1_000_000
 _CHOICES = 0

@@ -8,9 +8,10 @@ the two depths tell which of them is in front. The cost of a frame does not depe
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,9 +19,6 @@ from numpy.typing import ArrayLike, NDArray
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.robot import load_robot
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 Floats: TypeAlias = NDArray[np.float64]
 Window: TypeAlias = tuple[int, int, int, int]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import yaml
@@ -28,9 +29,6 @@ from fuzzyq_bullet.scenario.problems import (
 )
 from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
 from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
-
-if TYPE_CHECKING:
-    import os
 
 Source: TypeAlias = "str | os.PathLike[str]"
 

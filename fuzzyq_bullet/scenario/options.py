@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, get_args
 
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.registry import no_planner, planner_names, settings_for
+from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.scenario.models import Drive, Scenario
 from fuzzyq_bullet.scenario.problems import key_path
 from fuzzyq_bullet.wording import not_one_of, shorten
-
-if TYPE_CHECKING:
-    from fuzzyq_bullet.planning.settings import PlannerSettings
 
 MAX_SEED = 2**63 - 1
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import re
 import typing
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from pydantic import BaseModel, ValidationError
 
@@ -19,9 +20,6 @@ from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.sensors import SENSORS
 from fuzzyq_bullet.shapes import MOTIONS, SHAPES
 from fuzzyq_bullet.wording import did_you_mean, shorten
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
 
 Loc: TypeAlias = tuple[str | int, ...]
 

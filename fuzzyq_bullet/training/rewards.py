@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +11,7 @@ from scipy.ndimage import map_coordinates
 from fuzzyq_bullet.geometry import Field, Floats
 from fuzzyq_bullet.occupancy import SIXTEEN, OccupancyGrid
 from fuzzyq_bullet.scenario.models import Scenario
-
-if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Outcome
+from fuzzyq_bullet.trajectory import Outcome
 
 HIT = 30.0
 """Penalty for a contact (s): more than any detour that avoids it."""

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from fuzzyq_bullet.figures.style import BLUE, INK, RED, SKY, new_figure, tidy
 from fuzzyq_bullet.studies.learning.table import LEAST_GAIN, Against, Figures, Summary
 from fuzzyq_bullet.studies.statistics import Estimate
 from fuzzyq_bullet.studies.study import Table, cell
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _FIGURES: tuple[tuple[str, Callable[[Figures], float | None], str], ...] = (
     ("success", lambda one: one.found, ".3f"),

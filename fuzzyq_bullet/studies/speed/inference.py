@@ -6,16 +6,14 @@ pyfuzzylite is not needed to run anything else, so it is imported only when a tw
 from __future__ import annotations
 
 from statistics import median
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fuzzyq_bullet.fuzzy import paper_controller
+from fuzzyq_bullet.fuzzy.inference import FuzzyController
+from fuzzyq_bullet.fuzzy.sets import Variable
 from fuzzyq_bullet.studies.speed import Row, interleaved, median_ratio
-
-if TYPE_CHECKING:
-    from fuzzyq_bullet.fuzzy.inference import FuzzyController
-    from fuzzyq_bullet.fuzzy.sets import Variable
 
 
 def controller(rounds: int, rate: int) -> list[Row]:

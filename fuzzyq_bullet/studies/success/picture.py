@@ -5,9 +5,12 @@ Planners stand side by side where they meet.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from collections.abc import Collection, Sequence
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, MaxNLocator, PercentFormatter
 
 from fuzzyq_bullet.figures.style import (
@@ -22,18 +25,9 @@ from fuzzyq_bullet.figures.style import (
     new_figure,
     tidy,
 )
-from fuzzyq_bullet.studies.success.table import MEASURES, by_planner, measures_of
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from fuzzyq_bullet.studies.episodes import Row
-    from fuzzyq_bullet.studies.statistics import Share
-    from fuzzyq_bullet.studies.success.table import Line, Summary
-
+from fuzzyq_bullet.studies.episodes import Row
+from fuzzyq_bullet.studies.statistics import Share
+from fuzzyq_bullet.studies.success.table import MEASURES, Line, Summary, by_planner, measures_of
 
 Counts: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.int64]]"
 """Numbers of obstacles, rising."""
