@@ -39,25 +39,15 @@ def obstacles_urdf(obstacles: Sequence[Shape]) -> tuple[str, dict[str, str]]:
 def walls_urdf(arena: Arena) -> str:
     """Return a URDF of the four walls, which stand just outside the arena's rectangle."""
     width, depth = arena.size
-    half = WALL_THICKNESS / 2
-    long_x, long_y = width + 2 * WALL_THICKNESS, depth
-    return _static(
-        "walls",
-        [
-            _shape(width / 2, -half, WALL_HEIGHT, 0.0, _box(long_x, WALL_THICKNESS, WALL_HEIGHT)),
-            _shape(
-                width / 2, depth + half, WALL_HEIGHT, 0.0, _box(long_x, WALL_THICKNESS, WALL_HEIGHT)
-            ),
-            _shape(-half, depth / 2, WALL_HEIGHT, 0.0, _box(WALL_THICKNESS, long_y, WALL_HEIGHT)),
-            _shape(
-                width + half, depth / 2, WALL_HEIGHT, 0.0, _box(WALL_THICKNESS, long_y, WALL_HEIGHT)
-            ),
-        ],
+    half, long = WALL_THICKNESS / 2, width + 2 * WALL_THICKNESS
+    walls = (
+        (width / 2, -half, long, WALL_THICKNESS),
+        (width / 2, depth + half, long, WALL_THICKNESS),
+        (-half, depth / 2, WALL_THICKNESS, depth),
+        (width + half, depth / 2, WALL_THICKNESS, depth),
     )
-
-
-def _box(length: float, width: float, height: float) -> str:
-    return f'<box size="{length!r} {width!r} {height!r}"/>'
+    solids = [(x, y, f'<box size="{a!r} {b!r} {WALL_HEIGHT!r}"/>') for x, y, a, b in walls]
+    return _static("walls", [_shape(x, y, WALL_HEIGHT, 0.0, box) for x, y, box in solids])
 
 
 def _shape(x: float, y: float, height: float, yaw: float, geometry: str) -> str:
