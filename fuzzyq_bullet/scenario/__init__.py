@@ -22,8 +22,7 @@ from fuzzyq_bullet.scenario.models import (
     Start,
     scenario_schema,
 )
-from fuzzyq_bullet.scenario.options import with_options
-from fuzzyq_bullet.scenario.random_tasks import random_task
+from fuzzyq_bullet.scenario.options import random_task, with_options
 from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
 __all__ = [

@@ -1,19 +1,26 @@
-"""Changing a scenario from outside: the planner, the seed and the drive that a caller asks for."""
+"""Scenarios that no file says: one with what a caller asks for, and tasks made of a seed alone."""
 
 from __future__ import annotations
 
 from typing import Any, get_args
 
+import numpy as np
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.registry import no_planner, planner_names, settings_for
 from fuzzyq_bullet.planning.settings import PlannerSettings
-from fuzzyq_bullet.scenario.models import Drive, Scenario
+from fuzzyq_bullet.scenario.models import Arena, Drive, Goal, Scenario, Start
 from fuzzyq_bullet.scenario.problems import key_path
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 MAX_SEED = 2**63 - 1
+SIDE = 10.0
+"""Of the arena (m)."""
+_INSET = 1.0
+"""How far from both walls a corner's place is (m)."""
+_JITTER = 0.3
+"""How far a place is moved along each axis, at most (m)."""
 
 
 def with_options(
@@ -77,3 +84,35 @@ def check_options(
         raise UserError(f"seed: must be from 0 to {MAX_SEED}, got {seed}")
     if drive is not None and drive not in get_args(Drive):
         raise UserError(f"drive: {not_one_of('drive', drive, get_args(Drive))}")
+
+
+def random_task(seed: int, *, count: int | None = 50, layout: str = "scatter") -> Scenario:
+    """Return a scenario with start and goal near two different corners of the arena.
+
+    Its obstacles are still to be drawn (``realise``), with the same seed. Which corners, and where
+    about them, has a stream of the seed to itself: layouts and counts can be compared on the same
+    starts and goals.
+
+    Args:
+        seed: 0 to 2⁶³ − 1.
+        count: How many obstacles, for layouts that have a count; None for those without.
+        layout: Name of a layout.
+
+    Raises:
+        pydantic.ValidationError: If the layout does not exist, or has no count.
+    """
+    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(2,)))
+    corners = rng.permutation(4)[:2]
+    far = np.column_stack([corners % 2, corners // 2]).astype(bool)
+    places = np.where(far, SIDE - _INSET, _INSET) + rng.uniform(-_JITTER, _JITTER, (2, 2))
+    start, goal = ((float(x), float(y)) for x, y in places.round(4))
+    return Scenario.model_validate(
+        {
+            "name": f"{layout}-{seed}",
+            "seed": seed,
+            "arena": Arena(size=(SIDE, SIDE)),
+            "start": Start(position=start),
+            "goal": Goal(position=goal),
+            "random": {"layout": layout} if count is None else {"layout": layout, "count": count},
+        }
+    )
