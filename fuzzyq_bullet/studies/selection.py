@@ -2,8 +2,9 @@
 
 They are all that learning may choose, and more: a search over fewer values than the learned planner
 has would let it win for having more of them. They are tried on a training's environments.
-Safe first, then sure, then fast. Times are compared over the same environments for all that are
-left by then: otherwise weights would look fast that fail where the way is long.
+
+The best are safe first, then sure, then fast. Times are compared over the same environments for all
+that are left by then: otherwise weights would look fast that fail where the way is long.
 """
 
 from __future__ import annotations
