@@ -71,6 +71,11 @@ class Random(Layout):
 
     def draw(self, scenario: Scenario, rng: np.random.Generator) -> tuple[Cylinder, ...]:
         """Draw the cylinders, exactly as many."""
+        if self.count and too_many(scenario, self.count):
+            raise UserError(
+                f"{scenario.name}: random.count: with the listed obstacles it makes more than "
+                f"{MAX_OBSTACLES}"
+            )
         places = np.empty((0, 2))
         idle = batches = 0
         hopeless = not self.overlap and self._too_dense(scenario.arena.size)
