@@ -257,8 +257,7 @@ class Trajectory:
         except (KeyError, TypeError, ValueError, RecursionError) as error:
             raise UserError(f"{path}: not a trajectory of fuzzyq_bullet") from error
         if form != FORMAT:
-            shown = repr(form)[:20]
-            raise UserError(f"{path}: a record of format {shown}; this version reads {FORMAT}")
+            raise UserError(f"{path}: a record of format {form!r:.20}; this version reads {FORMAT}")
         try:
             head = _Head.model_validate(meta, context=ANY_NAME)
             ticks = Ticks(**check_arrays("ticks", TICKS, arrays))
@@ -266,8 +265,8 @@ class Trajectory:
             _check(ticks, decisions)
             _check_collision(head.collision, head.scenario)
         except ValidationError as error:
-            if names := unknown_names(error):
-                missing = f"made with {' and '.join(names)}, not known here"
+            if names := " and ".join(unknown_names(error)):
+                missing = f"made with {names}, not known here"
                 raise UserError(f"{path}: {missing}; --plugin FILE adds it") from error
             first = error.errors(include_url=False)[0]
             where = ".".join(str(part) for part in first["loc"])

@@ -53,7 +53,7 @@ def register_study(study: _S) -> _S:
                 cells = [[row.planner, row.outcome] for row in rows]
                 return Findings((Table("How runs ended.", ("planner", "outcome"), cells),), {})
 
-    A study of the package itself is a folder here, and a line in ``_BUNDLED``.
+    A study of the package itself is a module or a folder here, and a line in ``_BUNDLED``.
 
     Raises:
         ValueError: If its name is taken, or cannot be one.
