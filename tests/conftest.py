@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -13,8 +15,12 @@ from typing import Any, TypeAlias
 
 import hypothesis
 import pytest
+from forking import FUZZYQ, Forks
 
 from fuzzyq_bullet.cli import app
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture
+from fuzzyq_bullet.video import scene
 from fuzzyq_bullet.workers import Answer, WorkerPool
 
 # How long an example takes is the machine's affair: no test asserts a time.
@@ -42,8 +48,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("slow")
 
 
-FUZZYQ = Path(sys.executable).with_name("fuzzyq")
-
 Call: TypeAlias = Callable[..., "subprocess.CompletedProcess[str]"]
 
 SHORT = """\
@@ -58,8 +62,8 @@ obstacles:
 
 
 @pytest.fixture(scope="session")
-def fuzzyq() -> Call:
-    """The installed command, in a process of its own."""
+def installed() -> Call:
+    """The installed command, in a process that starts from nothing."""
 
     def call(
         *args: object, cwd: Path | None = None, timeout: float = 120, **more: object
@@ -70,6 +74,20 @@ def fuzzyq() -> Call:
         )
 
     return call
+
+
+@pytest.fixture(scope="session")
+def fuzzyq(installed: Call) -> Iterator[Call]:
+    """The command in a process of its own, which has the libraries loaded where that can be."""
+    if not hasattr(os, "fork"):
+        yield installed
+        return
+    with Forks() as forks:
+
+        def call(*args: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+            return forks.call([*map(str, args)], cwd)
+
+        yield call
 
 
 @pytest.fixture(scope="session")
@@ -118,7 +136,11 @@ class Here:
         self, function: Callable[[Any], Any], arguments: Sequence[Any], **_: object
     ) -> Iterator[tuple[int, Answer]]:
         for i, argument in enumerate(arguments):
-            yield i, Answer(function(argument))
+            try:
+                answer = Answer(function(argument))
+            except UserError as error:
+                answer = Answer(failed=error.problems)
+            yield i, answer
 
 
 @pytest.fixture(scope="session")
@@ -132,4 +154,26 @@ def no_workers() -> Iterator[None]:
     """Let commands do in this process what workers are for."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(WorkerPool, "run", Here.run)
+        yield
+
+
+@pytest.fixture(scope="module")
+def still_once() -> Iterator[None]:
+    """Take the picture of all that stands still once for the frames of the same world.
+
+    It takes more than a second, and is the same each time: ``test_the_same_run_gives_the_same_bytes``
+    takes it anew.
+    """
+    real, taken = scene.photograph, dict[bytes, Picture]()
+
+    def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Picture:
+        asked = pickle.dumps((meshes, lens, oversampling))
+        if asked not in taken:
+            taken[asked] = real(meshes, lens, oversampling)
+            for part in taken[asked]:
+                part.setflags(write=False)
+        return taken[asked]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(scene, "photograph", photograph)
         yield

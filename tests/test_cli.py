@@ -68,9 +68,9 @@ def test_the_summary_goes_to_stderr_a_line_for_the_run_and_one_for_each_file(fil
 
 
 def test_the_same_scenario_planner_and_seed_give_the_same_digest_in_another_process(
-    fuzzyq: Call, short: Path, filmed: Path, tmp_path: Path
+    installed: Call, short: Path, filmed: Path, tmp_path: Path
 ) -> None:
-    again = fuzzyq("run", short, "--out", tmp_path, "--no-video", "--json")
+    again = installed("run", short, "--out", tmp_path, "--no-video", "--json")
     assert json.loads(again.stdout) == json.loads((filmed / "stdout").read_text())
     assert not (tmp_path / "short.mp4").exists()
 
@@ -249,8 +249,8 @@ def test_the_command_alone_and_a_group_alone_show_their_help(fuzzyq: Call) -> No
         assert done.stderr == ""
 
 
-def test_the_version_is_that_of_the_package_and_the_module_runs_too(fuzzyq: Call) -> None:
-    assert fuzzyq("--version").stdout == f"{__version__}\n"
+def test_the_version_is_that_of_the_package_and_the_module_runs_too(installed: Call) -> None:
+    assert installed("--version").stdout == f"{__version__}\n"
     module = [sys.executable, "-m", "fuzzyq_bullet", "--version"]
     assert subprocess.run(module, capture_output=True, text=True).stdout == f"{__version__}\n"
 
@@ -296,8 +296,8 @@ def test_a_full_stdout_is_told_in_one_line(fuzzyq: Call) -> None:
     assert done.stderr == "error: stdout: cannot be written: No space left on device\n"
 
 
-def test_a_locale_without_the_signs_of_a_page_is_no_reason_to_fail(fuzzyq: Call) -> None:
-    done = fuzzyq("explain", "1", "-0.8", env={**os.environ, "PYTHONIOENCODING": "ascii"})
+def test_a_locale_without_the_signs_of_a_page_is_no_reason_to_fail(installed: Call) -> None:
+    done = installed("explain", "1", "-0.8", env={**os.environ, "PYTHONIOENCODING": "ascii"})
     assert done.returncode == 0, done.stderr
 
 

@@ -202,26 +202,28 @@ def limited(size: int) -> Callable[[], None]:
     return limit
 
 
-def test_no_room_for_the_record_leaves_nothing(fuzzyq: Call, short: Path, tmp_path: Path) -> None:
-    done = fuzzyq("run", short, "--no-video", "--out", tmp_path, preexec_fn=limited(3000))
+def test_no_room_for_the_record_leaves_nothing(
+    installed: Call, short: Path, tmp_path: Path
+) -> None:
+    done = installed("run", short, "--no-video", "--out", tmp_path, preexec_fn=limited(3000))
     assert f"{tmp_path / 'short.npz'}: cannot be written: File too large" in told(done)
     assert not list(tmp_path.iterdir())
 
 
 def test_no_room_for_anything_is_told_in_one_line_too(
-    fuzzyq: Call, short: Path, tmp_path: Path
+    installed: Call, short: Path, tmp_path: Path
 ) -> None:
-    told(fuzzyq("run", short, "--no-video", "--out", tmp_path, preexec_fn=limited(0)))
+    told(installed("run", short, "--no-video", "--out", tmp_path, preexec_fn=limited(0)))
     assert not list(tmp_path.iterdir())
 
 
 def test_no_room_for_the_video_leaves_the_older_one(
-    fuzzyq: Call, filmed: Path, tmp_path: Path
+    installed: Call, filmed: Path, tmp_path: Path
 ) -> None:
     record, video = tmp_path / "short.npz", tmp_path / "short.mp4"
     record.write_bytes((filmed / "short.npz").read_bytes())
     video.write_bytes(b"an older one")
-    line = told(fuzzyq("replay", record, preexec_fn=limited(20_000)))
+    line = told(installed("replay", record, preexec_fn=limited(20_000)))
     assert str(video) in line
     assert ".part" not in line
     assert video.read_bytes() == b"an older one"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import re
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -34,8 +33,11 @@ def test_the_columns_say_which_side_is_freer(fuzzyq: Call) -> None:
 
 
 @pytest.mark.parametrize("width", [50, 60, 79, 80])
-def test_a_narrow_terminal_cuts_nothing_away(width: int, fuzzyq: Call) -> None:
-    shown = fuzzyq("explain", "1", "-0.8", env={**os.environ, "COLUMNS": str(width)}).stdout
+def test_a_narrow_terminal_cuts_nothing_away(
+    width: int, fuzzyq: Call, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(width))
+    shown = fuzzyq("explain", "1", "-0.8").stdout
     assert max(map(len, shown.splitlines())) <= width
     assert "…" not in shown
     strengths = paper_controller().infer(1.0, -0.8).rules

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.video.paint import DirtyRegion
 
 
+pytestmark = pytest.mark.usefixtures("still_once")
+
+
 def pixels(image: Image.Image, rect: Rect) -> np.ndarray[Any, np.dtype[np.int64]]:
     part = image.crop((rect.x, rect.y, rect.right, rect.bottom))
     return np.asarray(part).astype(np.int64)
@@ -245,6 +248,9 @@ def test_every_kind_of_run_is_drawn_with_all_text_in_its_box(
         real(image, at, text, colour, size, bold=bold, align=align)
 
     monkeypatch.setattr(paint, "write", write)
+    monkeypatch.setattr(
+        "fuzzyq_bullet.video.scene.DETAIL", 1
+    )  # smooth edges take time, and are no text
     run = all_runs[name]
     regions: list[DirtyRegion] = []
     with Compositor(run) as compositor:

@@ -8,6 +8,7 @@ the two depths tell which of them is in front. The cost of a frame does not depe
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -291,7 +292,11 @@ def shoot(engine: Engine, lens: Lens, window: Window, oversampling: int = 1) -> 
         physicsClientId=engine.client,
         **_LIGHT,
     )
-    # Without numpy support PyBullet answers with flat tuples.
+    if isinstance(colour, tuple):
+        # PyBullet without numpy support. By way of buffers, long tuples become arrays in half the
+        # time: that saves a quarter of a second before the first frame.
+        colour = np.frombuffer(bytes(colour), dtype=np.uint8)
+        depth, mask = array("f", depth), array("i", mask)
     return Picture(
         np.asarray(colour, dtype=np.uint8).reshape(height, width, 4)[..., :3],
         np.asarray(depth, dtype=np.float32).reshape(height, width),
