@@ -5,11 +5,11 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import pickle
 import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -22,6 +22,10 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture
 from fuzzyq_bullet.video import scene
 from fuzzyq_bullet.workers import Answer, WorkerPool
+
+# Hundreds of processes start: where nobody keeps what Python compiles, each compiles all anew.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # How long an example takes is the machine's affair: no test asserts a time.
 hypothesis.settings.register_profile("fuzzyq", deadline=None, max_examples=50)
@@ -149,6 +153,13 @@ def here() -> Here:
     return Here()
 
 
+@pytest.fixture
+def in_this_process() -> Iterator[None]:
+    """Let commands do here what workers are for, where those are not what is claimed."""
+    with no_workers():
+        yield
+
+
 @contextlib.contextmanager
 def no_workers() -> Iterator[None]:
     """Let commands do in this process what workers are for."""
@@ -161,18 +172,22 @@ def no_workers() -> Iterator[None]:
 def still_once() -> Iterator[None]:
     """Take the picture of all that stands still once for the frames of the same world.
 
-    It takes more than a second, and is the same each time: ``test_the_same_run_gives_the_same_bytes``
-    takes it anew.
+    It takes more than a second, and is the same each time, as
+    ``test_the_same_run_gives_the_same_bytes`` claims, which takes it anew.
     """
-    real, taken = scene.photograph, dict[bytes, Picture]()
+    real, taken = scene.photograph, dict[object, Picture]()
 
     def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Picture:
-        asked = pickle.dumps((meshes, lens, oversampling))
+        asked = (astuple(lens), oversampling, *(surface(mesh) for mesh in meshes))
         if asked not in taken:
             taken[asked] = real(meshes, lens, oversampling)
             for part in taken[asked]:
                 part.setflags(write=False)
         return taken[asked]
+
+    def surface(mesh: Mesh) -> object:
+        corners = (mesh.vertices, mesh.normals, mesh.triangles)
+        return (*(array.tobytes() for array in corners), mesh.colour)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(scene, "photograph", photograph)

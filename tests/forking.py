@@ -1,8 +1,9 @@
 """The command ``fuzzyq`` in a process of its own that need not load the libraries anew.
 
-Loading them takes longer than most of what tests ask for. A helper process has them loaded, and makes
-a copy of itself for each call: what the command does to its process, and what it leaves behind there,
-is seen by nobody else. The copy ends as the installed command does: by leaving its ``__main__``.
+Loading them takes longer than most of what tests ask for. A helper process has them loaded, and
+makes a copy of itself for each call: what the command does to its process, and what it leaves
+behind there, is seen by nobody else. The copy ends as the installed command does: by leaving its
+``__main__``.
 """
 
 from __future__ import annotations

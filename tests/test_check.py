@@ -382,6 +382,7 @@ def test_a_bundled_scenario_is_not_recorded_into_the_installation(
     assert not (data_folder("scenarios") / "check-record.json").exists()
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
     inside: Call, folder: Path, tmp_path: Path
 ) -> None:

@@ -87,6 +87,7 @@ def test_degrees_that_no_angle_can_be_are_refused_as_such(tmp_path: Path) -> Non
         warnings_of(HEAD.replace("5.0]}\ngoal", "5.0], heading: 180}\ngoal"), tmp_path)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_all_commands_tell(inside: Call, tmp_path: Path) -> None:
     path = tmp_path / "s.yaml"
     path.write_text(HEAD + WALL + "limits: {time: 0.5}\n")
@@ -102,6 +103,7 @@ def test_all_commands_tell(inside: Call, tmp_path: Path) -> None:
     assert sum("no way" in line for line in lines) == 1
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_github_is_told_at_the_line(inside: Call, tmp_path: Path) -> None:
     path = tmp_path / "s.yaml"
     path.write_text(HEAD.replace("5.0]}\ngoal", "5.0], heading: 90}\ngoal"))

@@ -388,6 +388,7 @@ def test_a_time_that_is_no_number_meets_nothing() -> None:
     assert len(unmet_expectations(Expect(max_time=100.0), result)) == 1
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_with_nothing_to_keep_clear_of_a_clearance_is_not_met(inside: Call, tmp_path: Path) -> None:
     text = SIMPLE + "arena: {walls: false}\nexpect: {min_clearance: 0.0}\n"
     (tmp_path / "s.yaml").write_text(text)
@@ -405,6 +406,7 @@ def test_an_overlap_is_a_negative_clearance(drive: str) -> None:
     assert -1e-3 < trajectory.ticks.clearance.min() < (0.0 if drive == "wheels" else 1e-9)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_nothing_to_drive_is_no_success(inside: Call, tmp_path: Path) -> None:
     from fuzzyq_bullet.errors import UserError
 

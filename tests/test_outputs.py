@@ -17,6 +17,8 @@ from fuzzyq_bullet.files import alone_at, own_parts, remove_parts, written_besid
 from fuzzyq_bullet.outputs import run_name
 from fuzzyq_bullet.platforms import asset
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 GIVEN = "would be replaced, but is an input of this command"
 
 
@@ -221,9 +223,10 @@ def test_a_check_keeps_the_record_of_another_run_and_its_verdict(
 
 
 def test_a_finished_policy_is_replaced_by_the_same_training_alone(
-    inside: Call, tmp_path: Path
+    inside: Call, short_here: Path, tmp_path: Path
 ) -> None:
-    train = ("train", "q-learning", "--out", tmp_path / "p.json", "--episodes")
+    train = ("train", "q-learning", "--scenario", short_here, "--out", tmp_path / "p.json")
+    train = (*train, "--episodes")
     inside(*train, 3)
     before = (tmp_path / "p.json").read_bytes()
     refused(lambda: inside(*train, 2, "--seed", 9), "not of this training; --anew replaces it")
@@ -246,6 +249,7 @@ def test_a_picture_that_no_training_has_drawn_stays(inside: Call, tmp_path: Path
 
 
 def test_two_checks_in_one_folder_both_have_their_films(short_here: Path, tmp_path: Path) -> None:
+    short_here.write_text(SHORT.replace("[1.4, 0.7]", "[1.0, 0.6]"))
     command = [FUZZYQ, "check", str(short_here), "--video", "all", "--out", str(tmp_path / "films")]
     both = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(2)]
     said = [one.communicate(timeout=100)[1] for one in both]

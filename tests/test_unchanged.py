@@ -82,6 +82,7 @@ CASES: dict[str, Callable[[], str]] = {
 
 
 @pytest.mark.skipif(not SAME_SINES, reason="sines differ elsewhere")
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("case", [case for case in CASES if not case.startswith("figure-")])
 def test_it_comes_to_the_same_as_ever(case: str) -> None:
     assert CASES[case]() == known(case)
