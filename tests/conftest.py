@@ -88,8 +88,10 @@ def fuzzyq(installed: Call) -> Iterator[Call]:
         return
     with Forks() as forks:
 
-        def call(*args: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-            return forks.call([*map(str, args)], cwd)
+        def call(
+            *args: object, cwd: Path | None = None, timeout: float = 120
+        ) -> subprocess.CompletedProcess[str]:
+            return forks.call([*map(str, args)], cwd, timeout)
 
         yield call
 

@@ -20,7 +20,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 FUZZYQ = Path(sys.executable).with_name("fuzzyq")
-TIMEOUT = 120.0
 LOADED = (
     *("fuzzyq_bullet.cli.app", "fuzzyq_bullet.episode", "fuzzyq_bullet.metrics"),
     *("fuzzyq_bullet.outputs", "fuzzyq_bullet.video", "rich.markdown", "typer.rich_utils"),
@@ -51,7 +50,7 @@ class Forks:
         self._answers.close()
 
     def call(
-        self, args: Sequence[str], cwd: Path | None = None
+        self, args: Sequence[str], cwd: Path | None = None, timeout: float = 120.0
     ) -> subprocess.CompletedProcess[str]:
         """Do what the command line with these words does."""
         with TemporaryDirectory() as name:
@@ -59,10 +58,10 @@ class Forks:
             files = [os.devnull, str(out), str(err)]
             self._orders.send((args, str(cwd or Path.cwd()), dict(os.environ), files))
             child = self._answers.recv()
-            if not self._answers.poll(TIMEOUT):
+            if not self._answers.poll(timeout):
                 os.kill(child, 9)
                 self._answers.recv()
-                raise subprocess.TimeoutExpired(["fuzzyq", *args], TIMEOUT)
+                raise subprocess.TimeoutExpired(["fuzzyq", *args], timeout)
             status = self._answers.recv()
             return subprocess.CompletedProcess(args, status, out.read_text(), err.read_text())
 

@@ -243,13 +243,13 @@ FOR_EVER = "threading.Event().wait"
     ids=["a thread", "a function at the end"],
 )
 def test_a_plugin_that_never_ends_keeps_no_verdict(
-    plugin: str, fuzzyq: Call, tmp_path: Path
+    plugin: str, installed: Call, tmp_path: Path
 ) -> None:
     (tmp_path / "p.py").write_text(f"import atexit, threading\n{plugin}\n")
     (tmp_path / "s.yaml").write_text(SIMPLE + "expect: {max_time: 1}\n")
-    done = fuzzyq("check", "s.yaml", "--plugin", "p.py", cwd=tmp_path, timeout=30)
+    done = installed("check", "s.yaml", "--plugin", "p.py", cwd=tmp_path, timeout=30)
     assert (done.returncode, done.stdout[:4]) == (1, "FAIL")
-    wrong = fuzzyq("run", "nowhere", "--plugin", "p.py", cwd=tmp_path, timeout=30)
+    wrong = installed("run", "nowhere", "--plugin", "p.py", cwd=tmp_path, timeout=30)
     assert (wrong.returncode, wrong.stderr[:6]) == (2, "error:")
 
 
