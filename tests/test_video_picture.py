@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 from synthetic import drive, modes, scenario
 
-from fuzzyq_bullet.scenario.models import Arena, Box, Cylinder
+from fuzzyq_bullet.scenario import Arena, Box, Cylinder
 from fuzzyq_bullet.trajectory import Collision, Decisions, Ticks
 from fuzzyq_bullet.video import frame, paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
