@@ -1,4 +1,4 @@
-"""What many tests share: the command line as people call it, and a run that takes no time."""
+"""What many tests are given: the command line, a run that takes no time, workers or none."""
 
 from __future__ import annotations
 
@@ -8,20 +8,18 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import astuple
 from pathlib import Path
-from typing import Any, TypeAlias
 
 import hypothesis
 import pytest
-from forking import FUZZYQ, Forks
 
 from fuzzyq_bullet.cli import app
-from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture
 from fuzzyq_bullet.video import scene
-from fuzzyq_bullet.workers import Answer, WorkerPool
+from tests.helpers.commands import FUZZYQ, SHORT, Call, Here, no_workers
+from tests.helpers.forking import Forks
 
 # Hundreds of processes start: where nobody keeps what Python compiles, each compiles all anew.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -34,35 +32,6 @@ hypothesis.settings.load_profile("fuzzyq")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A job in the background of a script ignores Ctrl-C, and what it starts would do so too.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-
-SLOW = (
-    *("check", "cli", "cli_bad_input", "cli_interrupt", "cli_train", "cluster", "drives"),
-    *("early_warnings", "episode", "escape", "exploration", "extend_expectation"),
-    *("extend_panel", "extend_planner", "extend_sensor", "extend_study", "extend_world"),
-    *("figure_panels", "gate", "ground_truth", "gym", "layouts", "learned_weights"),
-    *("learning_gain", "learning_training", "outputs", "package", "pytest_plugin", "pythons"),
-    *("report", "success", "sweep", "unchanged", "video", "video_picture"),
-)
-"""Modules of tests that take long: ``-m "not slow"`` leaves them out."""
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    for item in items:
-        if item.path.stem.removeprefix("test_") in SLOW:
-            item.add_marker("slow")
-
-
-Call: TypeAlias = Callable[..., "subprocess.CompletedProcess[str]"]
-
-SHORT = """\
-name: short
-arena: {size: [3.0, 2.0]}
-start: {position: [0.6, 0.6]}
-goal: {position: [1.4, 0.7]}
-obstacles:
-  - {shape: cylinder, position: [2.3, 1.4], radius: 0.2}
-  - {shape: box, position: [1.2, 1.5], size: [0.3, 0.2], yaw: 0.4}
-"""
 
 
 @pytest.fixture(scope="session")
@@ -135,20 +104,6 @@ def filmed(fuzzyq: Call, short: Path, tmp_path_factory: pytest.TempPathFactory) 
     return folder
 
 
-class Here:
-    """A pool that does all work in this process, one order after the other."""
-
-    def run(
-        self, function: Callable[[Any], Any], arguments: Sequence[Any], **_: object
-    ) -> Iterator[tuple[int, Answer]]:
-        for i, argument in enumerate(arguments):
-            try:
-                answer = Answer(function(argument))
-            except UserError as error:
-                answer = Answer(failed=error.problems)
-            yield i, answer
-
-
 @pytest.fixture(scope="session")
 def here() -> Here:
     """A pool without workers, which need a second or two to start."""
@@ -159,14 +114,6 @@ def here() -> Here:
 def in_this_process() -> Iterator[None]:
     """Let commands do here what workers are for, where those are not what is claimed."""
     with no_workers():
-        yield
-
-
-@contextlib.contextmanager
-def no_workers() -> Iterator[None]:
-    """Let commands do in this process what workers are for."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(WorkerPool, "run", Here.run)
         yield
 
 

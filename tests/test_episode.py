@@ -33,6 +33,8 @@ from fuzzyq_bullet.scenario import (
 )
 from fuzzyq_bullet.trajectory import Trajectory
 
+pytestmark = pytest.mark.slow
+
 FAST = ImprovedFuzzySettings(weights=(1.0, 1.0))
 
 

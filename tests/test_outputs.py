@@ -9,15 +9,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import FUZZYQ, SHORT, Call
 
 from fuzzyq_bullet import Trajectory, load_scenario, with_options
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import alone_at, own_parts, remove_parts, written_beside
 from fuzzyq_bullet.outputs import run_name
 from fuzzyq_bullet.platforms import asset
+from tests.helpers.commands import FUZZYQ, SHORT, Call
 
-pytestmark = pytest.mark.usefixtures("in_this_process")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("in_this_process")]
 
 GIVEN = "would be replaced, but is an input of this command"
 

@@ -28,6 +28,8 @@ from fuzzyq_bullet import (
     with_options,
 )
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parent.parent
 
 

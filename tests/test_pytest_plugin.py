@@ -11,7 +11,10 @@ from typing import TypeAlias
 from xml.etree import ElementTree
 
 import pytest
-from conftest import SHORT
+
+from tests.helpers.commands import SHORT
+
+pytestmark = pytest.mark.slow
 
 CRASH = """\
 name: crash

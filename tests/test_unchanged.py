@@ -5,7 +5,7 @@ A change of behaviour that is meant is recorded anew, and CHANGELOG.md tells of 
     python tests/test_unchanged.py
 
 Only Linux on x86-64 is compared: elsewhere the last bit of a sine may differ. The scenarios of the
-figures are run, and compared, by test_figure_panels.py.
+figures are run, and compared, by experiments/test_figure_panels.py.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ import pytest
 from fuzzyq_bullet import Scenario, Trajectory, load_scenario, run, with_options
 from fuzzyq_bullet.cli import app
 from fuzzyq_bullet.scenario import bundled_scenarios, random_task
+
+pytestmark = pytest.mark.slow
 
 KNOWN = Path(__file__).with_name("unchanged.json")
 SAME_SINES = (sys.platform, platform.machine()) == ("linux", "x86_64")

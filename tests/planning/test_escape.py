@@ -1,0 +1,340 @@
+"""Ways out: breakout and sustained avoidance reach what the controller alone cannot."""
+
+import math
+from itertools import groupby
+
+import numpy as np
+import pytest
+
+from fuzzyq_bullet.episode import run
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.planning import MODES, Decision, ImprovedFuzzySettings, Observation, RangeSensor
+from fuzzyq_bullet.planning.base import STEP_UNIT
+from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
+from fuzzyq_bullet.planning.exploration import NEAR
+from fuzzyq_bullet.planning.path_follower import PATIENCE as FOLLOWER_PATIENCE
+from fuzzyq_bullet.planning.path_follower import PathFollower, Segment
+from fuzzyq_bullet.planning.ray_search import ray_search
+from fuzzyq_bullet.scenario import Arena, Box, Cylinder, Goal, Limits, Scenario, Start
+from tests.helpers.exploring import observe
+
+pytestmark = pytest.mark.slow
+
+FULL = ImprovedFuzzySettings(weights=(1.0, 1.0))
+
+
+def box(x, y, length, width):
+    return Box(shape="box", position=(x, y), size=(length, width))
+
+
+def task(obstacles, *, goal=(7.0, 4.0), planner=FULL, drive="wheels", time=200.0):
+    return Scenario(
+        name="trap",
+        arena=Arena(size=(8.0, 8.0)),
+        start=Start(position=(1.0, 4.0)),
+        goal=Goal(position=goal),
+        obstacles=obstacles,
+        planner=planner,
+        drive=drive,
+        limits=Limits(time=time),
+    )
+
+
+def semicircle(radius=1.2):
+    """Return a trap of cylinders that opens towards the start."""
+    angles = np.linspace(-math.pi / 2, math.pi / 2, 19)
+    return tuple(
+        Cylinder(
+            shape="cylinder",
+            position=(4.0 + radius * math.cos(a), 4.0 + radius * math.sin(a)),
+            radius=0.2,
+        )
+        for a in angles
+    )
+
+
+def u_shape():
+    return (box(4.6, 4.0, 0.2, 2.6), box(3.8, 5.2, 1.6, 0.2), box(3.8, 2.8, 1.6, 0.2))
+
+
+TRAPS = {
+    "semicircle": semicircle(),
+    "u-shape": u_shape(),
+    "long wall": (box(4.0, 4.6, 0.2, 5.0),),
+}
+
+
+def modes_of(trajectory):
+    return {MODES[mode] for mode in trajectory.decisions.mode}
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+@pytest.mark.parametrize("trap", TRAPS)
+def test_it_gets_out_of_traps_and_touches_nothing(trap, drive):
+    trajectory = run(task(TRAPS[trap], drive=drive))
+    assert trajectory.outcome == "goal"
+    assert trajectory.ticks.clearance.min() > 0.0
+    assert modes_of(trajectory) == set(MODES)
+
+
+@pytest.mark.parametrize("trap", TRAPS)
+def test_without_the_schemes_the_same_traps_hold_it(trap):
+    plain = ImprovedFuzzySettings(weights=(1.0, 1.0), breakout=False)
+    trajectory = run(task(TRAPS[trap], planner=plain, time=60.0))
+    assert trajectory.outcome in {"stuck", "timeout"}
+    assert modes_of(trajectory) == {"routine"}
+
+
+def test_a_breakout_that_is_not_sustained_does_not_get_out_of_a_semicircle():
+    brief = ImprovedFuzzySettings(weights=(1.0, 1.0), following=False)
+    trajectory = run(task(TRAPS["semicircle"], planner=brief, time=60.0))
+    assert trajectory.outcome in {"stuck", "timeout"}
+    assert "following" not in modes_of(trajectory)
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_where_there_is_no_way_it_ends_without_a_touch(drive):
+    prison = (
+        box(7.0, 5.2, 2.0, 0.2),
+        box(7.0, 2.8, 2.0, 0.2),
+        box(5.9, 4.0, 0.2, 2.6),
+    )
+    trajectory = run(task(prison, drive=drive, time=40.0))
+    assert trajectory.outcome in {"stuck", "timeout"}
+    assert trajectory.collision is None
+
+
+def test_an_escape_says_where_it_is_going():
+    trajectory = run(task(TRAPS["u-shape"]))
+    decisions = trajectory.decisions
+    routine = decisions.mode == MODES.index("routine")
+    assert np.isnan(decisions.target[routine]).all()
+    assert np.isfinite(decisions.target[~routine]).all()
+    # A breakout's temporary goal is where it goes next, within sight; and it does get there.
+    position, ticks = trajectory.ticks.position, decisions.tick
+    for index in np.flatnonzero(decisions.mode == MODES.index("breakout")):
+        target = decisions.target[index]
+        assert math.dist(target, position[ticks[index]]) <= 1.0
+        assert np.hypot(*(position[ticks[index] :] - target).T).min() < 0.5
+
+
+def blocked_ahead(position, difference):
+    """Return what the routine part and the escape see where only the way to the goal is blocked."""
+    bearing = math.atan2(-position[1], 100.0 - position[0])
+
+    def sense(headings):
+        return np.array([0.1 if abs(one - bearing) < 0.5 else 1.0 for one in headings])
+
+    lines = np.array([bearing + 0.8, bearing, bearing - 0.8])
+    routine = Decision(
+        heading=bearing,
+        step=0.1,
+        lines=lines,
+        lengths=sense(lines),
+        difference=difference,
+        weights=(1.0, 1.0),
+        breakout_at=1.0,
+    )
+    observation = Observation(
+        time=0.0,
+        position=position,
+        heading=bearing,
+        speed=0.0,
+        turn_rate=0.0,
+        goal=(100.0, 0.0),
+        goal_radius=0.2,
+        range=1.0,
+        radius=0.22,
+        sensor=RangeSensor(sense, lambda headings: sense(headings) + 0.2),
+    )
+    return routine, observation
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_tie_of_both_sides_is_broken_by_the_side_with_more_room(sign):
+    plain = Escape(following=False)
+    decision = plain.decide(*blocked_ahead((0.0, 0.0), 2.0 * sign))
+    assert decision.mode == "breakout"
+    assert decision.heading * sign > 0.4
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_sweep_finds_the_first_free_way_on_its_side(side):
+    field = Field(boxes=np.array([[0.5, 0.0, 0.2, 1.0, 0.0]]))
+
+    def sense(headings):
+        return field.free_distance((0.0, 0.0), headings, 0.2, 1.0)
+
+    found = ray_search(sense, 0.0, side, 0.8)
+    assert found.heading * side > 0.0
+    assert sense([found.heading])[0] >= 0.8
+    blocked, length = found.blocked
+    assert length < 0.8
+    assert abs(found.heading - blocked) <= math.radians(2.5)
+    before = side * np.arange(0.0, abs(blocked), 0.02)
+    assert (sense(before) < 0.8).all()
+
+
+def test_a_sweep_among_walls_finds_nothing():
+    field = Field(arena=(0.5, 0.5))
+
+    def sense(headings):
+        return field.free_distance((0.25, 0.25), headings, 0.2, 1.0)
+
+    assert ray_search(sense, 0.0, 1, 0.3) is None
+
+
+# ---- what it decides, one decision after the other
+
+
+class Walk:
+    """A robot that is put somewhere, and what its escape decides there."""
+
+    def __init__(self, field, goal):
+        self.escape, self.field, self.goal, self.time = Escape(), field, goal, 0.0
+
+    def decide(self, here, *, middle=None, sense=None):
+        """Return the decision a quarter of a second later; ``middle``: the line to the goal."""
+        self.time += 0.25
+        seen = observe(self.field, here, goal=self.goal, time=self.time, sense=sense)
+        bearing = math.atan2(self.goal[1] - here[1], self.goal[0] - here[0])
+        lines = np.array([bearing + 0.8, bearing, bearing - 0.8])
+        lengths = np.array(seen.sense(lines))
+        lengths[1] = lengths[1] if middle is None else middle
+        routine = Decision(
+            heading=7.0,
+            step=0.1,
+            lines=lines,
+            lengths=lengths,
+            weights=(1.0, 1.0),
+            breakout_at=1.0,
+        )
+        return self.escape.decide(routine, seen)
+
+
+WALLED = Field(boxes=np.array([[0.7, 0.0, 0.1, 6.0, 0.0]]))
+"""The goal at (5, 0) is behind a wall; from the origin the line to it is free for 0.43 m."""
+
+
+def stalled():
+    """A robot that came no nearer for too long, 0.43 m before the wall: its first breakout."""
+    walk = Walk(WALLED, (5.0, 0.0))
+    while (decision := walk.decide((0.0, 0.0))).mode == "routine":
+        assert walk.time <= PATIENCE + 0.6
+    assert decision.mode == "breakout"
+    assert walk.time > PATIENCE
+    return walk
+
+
+def test_a_stalled_robot_does_not_leave_where_it_stalled():
+    walk = stalled()
+    for _ in range(10):
+        assert walk.decide((0.0, 0.0)).mode == "following"
+
+
+def test_it_leaves_where_the_line_leads_nearer_than_the_line_that_did_not_help():
+    # The line led to 0.43 m before the goal's 5 m. At the same distance from the goal elsewhere:
+    as_before = math.dist((0.1, 1.0), (5.0, 0.0)) - 4.57
+    for more in (-0.1, 0.0, GAIN * STEP_UNIT - 0.02):
+        walk = stalled()
+        assert walk.decide((0.1, 1.0), middle=as_before + more).mode == "following"
+    walk = stalled()
+    left = walk.decide((0.1, 1.0), middle=as_before + GAIN * STEP_UNIT + 0.02)
+    assert left.mode == "routine"
+    # ... and it drives that line, not the controller's heading, until it is nearer than ever.
+    assert left.heading == pytest.approx(math.atan2(-1.0, 4.9))
+    assert not left.hopeless
+    away = walk.decide((0.0, 0.5), middle=0.6)
+    assert (away.mode, away.heading) == ("routine", pytest.approx(math.atan2(-0.5, 5.0)))
+    nearer = walk.decide((0.3, 0.2), middle=0.6)
+    assert (nearer.mode, nearer.heading) == ("routine", 7.0)
+
+
+def test_it_leaves_where_the_line_leads_to_the_goal():
+    walk = stalled()
+    assert walk.decide((4.0, 1.0), middle=math.dist((4.0, 1.0), (5.0, 0.0))).mode == "routine"
+
+
+def test_a_blocked_robot_looks_at_once():
+    walk = Walk(WALLED, (5.0, 0.0))
+    assert walk.decide((0.0, 0.0)).mode == "routine"
+    decision = walk.decide((0.3, 0.0))  # 0.13 m before it stops
+    assert decision.mode == "breakout"
+    assert abs(decision.target[1]) > 0.5
+
+
+def test_where_it_comes_nearer_it_leaves_the_controller_alone():
+    walk = Walk(WALLED, (5.0, 0.0))
+    for k in range(30):
+        decision = walk.decide((-2.0 + 0.05 * k, 0.0))
+        assert (decision.mode, decision.heading) == ("routine", 7.0)
+
+
+def test_an_exit_that_cannot_be_reached_is_tried_twice_and_then_given_up():
+    walk = stalled()
+    held = []  # the robot is held where it is, though all ways seem free
+    while not (decision := walk.decide((0.0, 0.0))).hopeless:
+        held.append(decision.target)
+        assert len(held) < 2000
+    tries = [(target, len(list(decisions))) for target, decisions in groupby(held)]
+    targets = {target for target, _ in tries}
+    assert len(targets) > 3
+    # None is come back to before all the others were tried.
+    assert {target for target, _ in tries[: len(targets)]} == targets
+    twice = 2 * FOLLOWER_PATIENCE / 0.25 + 2
+    counts = [count for _, count in tries[1:]]
+    assert counts[: len(targets) - 1] == pytest.approx([twice] * (len(targets) - 1), abs=2)
+    assert max(counts) <= twice + 2
+    assert len(tries) <= 2 * len(targets)
+    assert decision.step == decision.reach == 0.0
+
+
+def test_where_no_way_is_free_it_knows_at_once_that_it_is_hopeless():
+    walk = Walk(Field(arena=(0.46, 0.46)), (5.0, 0.0))
+    decision = walk.decide((0.23, 0.23))
+    assert decision.hopeless
+    assert decision.step == decision.reach == 0.0
+
+
+def test_where_ways_are_seen_but_none_can_be_gone_it_ends_hopeless_soon():
+    walk = Walk(WALLED, (5.0, 0.0))
+    walk.decide((0.3, 0.0))
+    for _ in range(60):
+        decision = walk.decide((0.3, 0.0), sense=lambda headings: np.zeros(len(headings)))
+        if decision.hopeless:
+            break
+        assert decision.mode == "following"
+    assert decision.hopeless
+
+
+def test_at_an_exit_it_looks_again_and_goes_on_to_another():
+    walk = stalled()
+    first = walk.decide((0.0, 0.0)).target
+    second = walk.decide(first)
+    assert second.mode == "following"
+    assert math.dist(second.target, first) > NEAR
+
+
+def test_near_the_goal_a_line_that_leads_to_it_is_taken_though_little_is_to_gain():
+    walk = Walk(Field(boxes=np.array([[0.4, 0.0, 0.1, 0.3, 0.0]])), (0.2, 0.0))
+    assert walk.decide((0.0, 0.0), middle=0.1).mode == "breakout"
+    assert walk.decide((0.15, 0.3), middle=0.25).mode == "following"
+    assert walk.decide((0.15, 0.3), middle=0.31).mode == "routine"
+
+
+def test_a_line_that_leads_nearer_but_is_blocked_is_not_taken():
+    walk = stalled()
+    assert walk.decide((0.8, 0.0), middle=0.1).mode == "following"
+
+
+def test_a_robot_that_comes_no_nearer_but_sees_nothing_on_its_line_goes_on():
+    walk = Walk(Field(), (5.0, 0.0))
+    assert {walk.decide((0.0, 0.0)).mode for _ in range(40)} == {"routine"}
+
+
+def test_it_drives_each_leg_of_its_course_and_no_farther(monkeypatch):
+    walk = stalled()
+    monkeypatch.setattr(PathFollower, "next", lambda self, observation: Segment(1.2, 0.03, 0.02))
+    decision = walk.decide((0.0, 0.0))
+    assert (decision.heading, decision.reach) == (1.2, 0.02)
+    assert decision.step <= 0.03
