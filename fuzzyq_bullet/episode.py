@@ -11,6 +11,7 @@ import numpy as np
 from fuzzyq_bullet.consult import ask, build_planner, refusal
 from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.velocity_controller import Twist
+from fuzzyq_bullet.drives.wheels import DECISIONS_A_SECOND
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
@@ -83,7 +84,8 @@ class Episode:
         scenario: A realised scenario.
         patience: How long the robot may stay at one place before it counts as stuck (s); a slow
             robot may stay longer.
-        rate: Decisions a second on wheels, which must divide 240; one every 0.3 s if None.
+        rate: Decisions a second on wheels, at most 80; each must last a whole number of physics
+            steps of 1/240 s.
 
     Raises:
         ValueError: If the world was built of other obstacles or another arena, there is nothing
@@ -99,7 +101,7 @@ class Episode:
         scenario: Scenario,
         *,
         patience: float = STUCK_TIME,
-        rate: int | None = None,
+        rate: float = DECISIONS_A_SECOND,
     ) -> None:
         if (world.obstacles, world.arena) != (scenario.obstacles, scenario.arena):
             raise ValueError(f"the world was not built for the scenario {scenario.name}")
@@ -196,7 +198,7 @@ class Episode:
         self.outcome = _outcome(self._driver, decision, count, limits, self._standstill)
 
 
-def _driver(world: SensorWorld, scenario: Scenario, rate: int | None) -> Driver:
+def _driver(world: SensorWorld, scenario: Scenario, rate: float) -> Driver:
     if scenario.drive == "kinematic":
         return KinematicDriver(world, scenario)
     if not isinstance(world, World):

@@ -24,10 +24,11 @@ from fuzzyq_bullet.trajectory import Collision
 COMMAND_STEPS = 3
 """Physics steps between two wheel commands: 80 a second, so that the ramp of the acceleration
 limit never asks the tyres for a jump they cannot hold."""
-TICK_STEPS = 36
-"""Physics steps between two ticks: one every 0.15 s."""
-DECISION_TICKS = 2
-"""Ticks between two decisions: one every 0.3 s."""
+TICK_STEPS = 12
+"""Physics steps between two ticks: one every 0.05 s, or one for every decision if these do not last
+a whole number of such ticks."""
+DECISIONS_A_SECOND = 20.0
+"""How often the planner decides, like that of a real robot."""
 
 RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05
@@ -39,19 +40,21 @@ class WheelsDriver(Driver):
     Args:
         world: The world of the scenario.
         scenario: A realised scenario.
-        rate: Decisions a second; None for one every 0.3 s.
+        rate: Decisions a second.
 
     Raises:
-        ValueError: If the rate does not divide 240, or is above 80.
+        ValueError: If a decision does not last a whole number of physics steps, or there are more
+            than 80 a second.
     """
 
-    def __init__(self, world: World, scenario: Scenario, rate: int | None = None) -> None:
-        self._tick_steps, self._decision_ticks = TICK_STEPS, DECISION_TICKS
-        if rate is not None:  # a tick for every decision
-            self._tick_steps, left_over = divmod(round(1.0 / TIME_STEP), rate)
-            self._decision_ticks = 1
-            if left_over or self._tick_steps < COMMAND_STEPS:
-                raise ValueError(f"{rate} decisions a second are no whole number of physics steps")
+    def __init__(
+        self, world: World, scenario: Scenario, rate: float = DECISIONS_A_SECOND
+    ) -> None:
+        steps = round(1.0 / TIME_STEP / rate) if rate > 0.0 else 0
+        if steps < COMMAND_STEPS or abs(steps * TIME_STEP * rate - 1.0) > 1e-9:
+            raise ValueError(f"{rate} decisions a second are no whole number of physics steps")
+        self._tick_steps = steps if steps % TICK_STEPS else TICK_STEPS
+        self._decision_ticks = steps // self._tick_steps
         tick_time = self._tick_steps * TIME_STEP
         limits = scenario.robot
         motion = Motion(

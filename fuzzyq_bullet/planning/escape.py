@@ -13,12 +13,15 @@ from __future__ import annotations
 
 import math
 
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Observation
-from fuzzyq_bullet.planning.decision import Decision, Mode
-from fuzzyq_bullet.planning.exploration import ExplorationGraph
+from fuzzyq_bullet.planning.aim import Aim, along_heading, towards_goal
+from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.decision import Mode
+from fuzzyq_bullet.planning.exploration import NEAR, ExplorationGraph
 from fuzzyq_bullet.planning.frontiers import Frontier
 from fuzzyq_bullet.planning.path_follower import NEARER, PathFollower
 from fuzzyq_bullet.planning.ray_search import eased, ray_search
+from fuzzyq_bullet.planning.scan import Point
+
 
 ENOUGH = 1.0
 """How much must be free after the turn of the plain breakout, in S_p (Fig. 6)."""
@@ -27,6 +30,12 @@ GAIN = 1.0
 PATIENCE = 2.5
 """Time without coming nearer to the goal after which the routine part has failed (s); longer for a
 slow robot."""
+BESIDE = math.radians(45.0)
+"""Where the plain breakout looks which side has more room, if both need the same turn (rad)."""
+LOOK_AGAIN = 0.3
+"""On its way to a frontier the robot scans again after so much (m)."""
+BETTER = 0.2
+"""It goes for another frontier only if the way over it is shorter by so much (m)."""
 ARRIVED = 0.1
 """A frontier as near as this is reached (m). It is less than ``exploration.NEAR``, so that a scan
 from there explores the frontier."""
@@ -45,23 +54,25 @@ class Escape:
         self._graph = ExplorationGraph()
         self._frontier: Frontier | None = None
         self._follower = PathFollower([])
-        self._failed: set[Frontier] = set()
+        self._failed: list[Point] = []  # frontiers that were not reached at first
+        self._left: list[Point] = []  # frontiers that were given up for better ones
+        self._scanned_at: Point = (math.inf, math.inf)
         self._nearest = math.inf
         self._since = 0.0
         self._straight = False
         self._mark = math.nan
 
-    def decide(self, routine: Decision, observation: Observation) -> Decision:
-        """Return the routine part's decision, or another one where it fails.
+    def aim(self, observation: Observation, breakout_at: float) -> Aim:
+        """Return the goal, or a temporary goal where the way to it is blocked.
 
         Args:
-            routine: What the routine part decides, with the c_f in force.
-            observation: What it decides about.
+            observation: What is observed.
+            breakout_at: c_f, in units of S_p.
         """
-        here, goal = observation.position, observation.goal
-        to_goal = math.dist(here, goal)
-        middle = routine.lengths[1]
-        enough = min(routine.breakout_at * observation.unit, to_goal)
+        goal = towards_goal(observation)
+        here, to_goal = observation.position, goal.distance
+        [middle] = observation.sense([goal.bearing])
+        enough = min(breakout_at * observation.unit, to_goal)
         if to_goal < self._nearest - NEARER:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._graph.pass_by(here)
@@ -69,7 +80,7 @@ class Escape:
         if self._frontier is not None:
             nearer = middle >= to_goal or to_goal - middle <= self._mark - GAIN * observation.unit
             if not nearer or middle < enough:
-                return self._follow(routine, observation)
+                return self._follow(observation)
             self._frontier, self._straight = None, True
         blocked = middle < enough
         stalled = (
@@ -78,83 +89,90 @@ class Escape:
             and middle < min(observation.range, to_goal)
         )
         if (blocked or stalled) and not self._follows:
-            return _break_out(routine, observation, middle)
+            return _break_out(observation, goal.bearing, middle)
         if blocked or stalled:
             # The line to the goal must lead nearer than it does now: this did not help.
             self._mark = min(self._nearest, to_goal - middle)
             self._scan(observation)
-            return self._follow(routine, observation, "breakout")
-        if self._straight:
-            # This line ended the avoidance, so it is driven as it is. The controller takes over
-            # when the robot is nearer than ever before.
-            return routine._replace(heading=routine.lines[1])
-        return routine
+            return self._follow(observation, "breakout")
+        # The line that ended the avoidance is driven as it is. The controller takes over when the
+        # robot is nearer than ever before.
+        return goal._replace(exact=self._straight)
 
     def _scan(self, observation: Observation) -> None:
         """Scan all around, and choose the frontier to go to."""
         self._graph.scan(observation)
+        self._scanned_at = observation.position
         self._frontier, path = self._graph.best_frontier(observation.goal) or (None, [])
         self._follower = PathFollower(path)
 
-    def _follow(
-        self, routine: Decision, observation: Observation, mode: Mode = "following"
-    ) -> Decision:
+    def _scan_again(self, observation: Observation, tried: Frontier) -> None:
+        """Scan on the way to a frontier, and go for another if that has become better."""
+        self._graph.scan(observation)
+        self._scanned_at = observation.position
+        best = self._graph.best_frontier(observation.goal, tried, BETTER)
+        if best is None:
+            self._frontier = None
+        elif best[0] != tried:
+            self._left.append(tried.point)
+            self._frontier, path = best
+            self._follower = PathFollower(path)
+
+    def _follow(self, observation: Observation, mode: Mode = "following") -> Aim:
         """Drive to the chosen frontier; if it is reached or cannot be reached, to the next one."""
-        segment = None
+        tried = self._frontier
+        # A frontier that was given up once is not given up again: so this ends.
+        if tried is not None and not _is_at(tried.point, self._left):
+            if math.dist(observation.position, self._scanned_at) > LOOK_AGAIN:
+                self._scan_again(observation, tried)
         while self._frontier is not None:
             tried = self._frontier
             if math.dist(observation.position, tried.point) > ARRIVED:
                 segment = self._follower.next(observation)
                 if segment is not None:
-                    break
+                    way = along_heading(
+                        observation, segment.heading, segment.length, mode, tried.point
+                    )
+                    exact = segment.exact or _is_at(tried.point, self._failed)
+                    return way._replace(exact=exact, reach=segment.reach)
                 self._fail(tried)
             self._scan(observation)
-        if self._frontier is None or segment is None:
-            return routine._replace(step=0.0, reach=0.0, mode=mode, hopeless=True)
-        step = routine.weights[0] * LONGEST_STRIDE * observation.unit
-        return routine._replace(
-            heading=segment.heading,
-            step=step if observation.motion is not None else min(step, segment.length),
-            reach=segment.reach,
-            mode=mode,
-            target=self._frontier.point,
-        )
+        return towards_goal(observation)._replace(mode=mode, reach=0.0, hopeless=True)
 
     def _fail(self, tried: Frontier) -> None:
         """Try a frontier that was not reached a second time, then put it on the blacklist.
 
         The robot may have come a little off the path that it saw; it goes back and aims again.
         """
-        if tried in self._failed:
+        if _is_at(tried.point, self._failed):
             self._graph.blacklist(tried)
-        self._failed.add(tried)
+        self._failed.append(tried.point)
 
 
-def _break_out(routine: Decision, observation: Observation, middle: float) -> Decision:
-    """Take the smaller turn, left or right, that is free (4.2, Algorithm 1, Fig. 6)."""
-    bearing = routine.lines[1]
+def _is_at(point: Point, places: list[Point]) -> bool:
+    return any(math.dist(point, place) <= NEAR for place in places)
+
+
+def _break_out(observation: Observation, bearing: float, middle: float) -> Aim:
+    """Aim at the smaller turn, left or right, that is free (4.2, Algorithm 1, Fig. 6)."""
     # A stalled robot may have its line free for a while: the obstacle at its end counts.
     enough = least = ENOUGH * observation.unit
     if middle < observation.range:
         enough = max(least, middle + 0.25 * observation.unit)
-    tie = 1 if routine.difference >= 0.0 else -1
+    left, right = observation.sense([bearing + BESIDE, bearing - BESIDE])
+    tie = 1 if left >= right else -1
     sides = [
         (side, found)
         for side in (tie, -tie)
         if (found := ray_search(observation.sense, bearing, side, enough, math.pi)) is not None
     ]
     if not sides:
-        return routine._replace(step=0.0, reach=0.0, mode="breakout")
+        return towards_goal(observation)._replace(mode="breakout", reach=0.0)
     side, found = min(sides, key=lambda one: round(one[1].turned, 3))
     found = eased(observation.sense, found, side, enough)
     to_goal = math.dist(observation.position, observation.goal)
     # T of Eqs. 24 to 26, but no farther than is known to be free.
-    length = min(found.free, max(0.0, to_goal * math.cos(found.heading - bearing)))
+    length = min(found.free, max(least, to_goal * math.cos(found.heading - bearing)))
     x, y = observation.position
-    step = routine.weights[0] * LONGEST_STRIDE * observation.unit
-    return routine._replace(
-        heading=found.heading,
-        step=step if observation.motion is not None else min(least, found.free),
-        mode="breakout",
-        target=(x + length * math.cos(found.heading), y + length * math.sin(found.heading)),
-    )
+    target = (x + length * math.cos(found.heading), y + length * math.sin(found.heading))
+    return along_heading(observation, found.heading, length, "breakout", target)

@@ -21,7 +21,7 @@ SPACING = 0.05
 """Distance between two nodes that are added while the robot drives (m)."""
 NEAR = 0.15
 """Two points no farther apart than this are one place (m)."""
-DOUBT = 0.5
+DOUBT = 1.0
 """What a gap costs more than a frontier beyond which more is free for certain (m)."""
 ENCLOSED = 1000.0
 """What a frontier costs more from which the known obstacles leave no path to the goal (m)."""
@@ -90,8 +90,15 @@ class ExplorationGraph:
         if self._corners_too:
             self._remember(find_concave_corners(index, here, scan))
 
-    def best_frontier(self, goal: Point) -> tuple[Frontier, list[Point]] | None:
+    def best_frontier(
+        self, goal: Point, kept: Frontier | None = None, switch: float = 0.0
+    ) -> tuple[Frontier, list[Point]] | None:
         """Return the frontier over which the path to the goal (m) may be the shortest.
+
+        Args:
+            goal: The goal (m).
+            kept: The frontier that the robot is on its way to.
+            switch: Another one must promise a path that is so much shorter (m).
 
         Returns:
             The frontier, and the points of the path from the latest node to it; None when every
@@ -105,7 +112,13 @@ class ExplorationGraph:
         if not self._frontiers:
             return None
         lengths, before = shortest_paths(self._nodes)
-        chosen = self._cheapest([lengths[one.node] + one.distance for one in self._frontiers], goal)
+        to_them = [lengths[one.node] + one.distance for one in self._frontiers]
+        if kept is not None and kept in self._frontiers:
+            to_them[self._frontiers.index(kept)] -= switch
+            chosen = self._cheapest(to_them, goal)
+            chosen = kept if math.dist(chosen.point, kept.point) <= NEAR else chosen
+        else:
+            chosen = self._cheapest(to_them, goal)
         path, at = [chosen.point], chosen.node
         while at >= 0:
             path.append(self._nodes[at].point)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from fuzzyq_bullet.fuzzy.inference import Inference
 from fuzzyq_bullet.fuzzy.paper import paper_controller
+from fuzzyq_bullet.planning.aim import Aim, towards_goal
 from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.settings import FuzzySettings, RoutineSettings
@@ -21,18 +22,19 @@ class Situation(NamedTuple):
     """What the detection lines and the controller tell, before it is weighted.
 
     Attributes:
-        bearing: World heading of the goal, and of the middle line (rad).
+        aim: What the middle line points at.
         to_goal: Distance to the centre of the goal (m).
         lines: World headings of the left, middle and right lines (rad), shape (3,).
         lengths: Their free lengths (m), shape (3,).
         distance: d, in units of S_p.
         difference: Df, in units of S_p (Eq. 14).
-        clear: Whether the middle line is free up to the goal, or as far as the robot sees.
+        clear: Whether the middle line is free up to the goal, and the goal is the aim.
         inferred: What the controller infers from d and Df.
         unit: S_p (m).
+        jumps: Whether a step is one jump of the point robot, which must not pass the aim.
     """
 
-    bearing: float
+    aim: Aim
     to_goal: float
     lines: tuple[float, float, float]
     lengths: Sequence[float]
@@ -41,40 +43,55 @@ class Situation(NamedTuple):
     clear: bool
     inferred: Inference
     unit: float = STEP_UNIT
+    jumps: bool = False
 
 
 class Routine:
     """Routine path planning for one episode (Section 3, Steps 4 to 11).
 
-    The middle detection line points at the goal, the others an angle α to its left and right. The
-    length of a line is how far the robot's disc can move along it before it touches something. If
-    the middle line is free up to the goal, there is nothing to avoid: d = 5, Df = 0.
+    The middle detection line points at the aim, the others an angle α to its left and right. The
+    aim is the goal, or on a way out a temporary goal. The length of a line is how far the robot's
+    disc can move along it before it touches something. If the middle line is free up to the goal,
+    there is nothing to avoid: d = 5, Df = 0.
     """
 
     def __init__(self, settings: RoutineSettings) -> None:
         self._settings = settings
         self._controller = paper_controller(rules=settings.rules, samples=settings.samples)
 
-    def sense(self, observation: Observation) -> Situation:
-        """Cast the three lines (Steps 4 to 6) and ask the controller (Step 9; Eqs. 13, 14)."""
+    def sense(self, observation: Observation, aim: Aim | None = None) -> Situation:
+        """Cast the three lines (Steps 4 to 6) and ask the controller (Step 9; Eqs. 13, 14).
+
+        Args:
+            observation: What is observed.
+            aim: What the middle line points at; by default the goal.
+        """
         settings, unit = self._settings, observation.unit
-        dx = observation.goal[0] - observation.position[0]
-        dy = observation.goal[1] - observation.position[1]
-        to_goal = math.hypot(dx, dy)
-        bearing = math.atan2(dy, dx)
+        aim = aim or towards_goal(observation)
         alpha = settings.line_angle
-        lines = (bearing + alpha, bearing, bearing - alpha)
+        lines = (aim.bearing + alpha, aim.bearing, aim.bearing - alpha)
         left, middle, right = lengths = observation.sense(lines)
 
-        clear = middle >= min(observation.range, to_goal)
+        seen = aim.distance if settings.clear == "aim" else min(observation.range, aim.distance)
+        # What lies beyond a temporary goal is unknown: there is always something to judge.
+        clear = middle >= seen and aim.mode == "routine"
         if clear:
             distance, difference = observation.range / unit, 0.0
         else:
             nearest = middle if settings.distance == "middle" else min(left, middle, right)
             distance, difference = nearest / unit, (left - right) / unit  # Eqs. 13, 14
-        inferred = self._controller.infer(distance, difference)
-        told = (bearing, to_goal, lines, lengths, distance, difference, clear, inferred)
-        return Situation(*told, unit)
+        return Situation(
+            aim=aim,
+            to_goal=math.dist(observation.position, observation.goal),
+            lines=lines,
+            lengths=lengths,
+            distance=distance,
+            difference=difference,
+            clear=clear,
+            inferred=self._controller.infer(distance, difference),
+            unit=unit,
+            jumps=observation.motion is None,
+        )
 
     def step(
         self,
@@ -87,13 +104,17 @@ class Routine:
         Args:
             situation: What was sensed.
             weights: (ω1, ω2).
-            breakout_at: c_f in units of S_p, for the breakout and the record.
+            breakout_at: c_f in units of S_p, for the record.
         """
         w1, w2 = weights
-        inferred = situation.inferred
+        aim, inferred = situation.aim, situation.inferred
+        turn = 0.0 if aim.exact else w2 * inferred.turn * self._settings.turn_unit
+        step = 0.0 if aim.hopeless else w1 * inferred.stride * situation.unit
         return Decision(
-            heading=situation.bearing + w2 * inferred.turn * self._settings.turn_unit,
-            step=min(w1 * inferred.stride * situation.unit, situation.to_goal),
+            heading=aim.bearing + turn,
+            step=min(step, aim.distance) if situation.jumps else step,
+            reach=aim.reach,
+            mode=aim.mode,
             lines=situation.lines,
             lengths=situation.lengths,
             distance=situation.distance,
@@ -105,6 +126,10 @@ class Routine:
             stride=inferred.stride,
             weights=weights,
             breakout_at=breakout_at,
+            target=aim.target,
+            aim=aim.point,
+            exact=float(aim.exact),
+            hopeless=aim.hopeless,
         )
 
 

@@ -38,10 +38,11 @@ class Weights(NamedTuple):
     breakout_at: float
 
 
-STEPS = (1.0, 2.0)
-TURNS = (0.5, 1.0)
-BREAKOUTS = (1.0, 4.0)
-"""Break out as late as possible, or almost as soon as an obstacle is seen ahead."""
+STEPS = (2.0, 10.0)
+"""As the rules say, or almost always at full speed: the safety filter sees to the rest."""
+TURNS = (0.25, 0.5)
+BREAKOUTS = (2.5, 4.0)
+"""Break out halfway, or almost as soon as an obstacle is seen ahead."""
 ACTIONS = tuple(Weights(*one) for one in product(STEPS, TURNS, BREAKOUTS))
 ACTION_NAMES = tuple(f"ω1 {a.step:g}, ω2 {a.turn:g}, c_f {a.breakout_at:g}" for a in ACTIONS)
 
@@ -95,7 +96,7 @@ class OptionTermination:
 
         Args:
             to_goal: Distance to the goal (m).
-            mode: Of the decision before.
+            mode: Of the aim: an option ends only where that is the goal.
             clear: Whether nothing is seen on the line to the goal.
         """
         nearest, self._nearest = self._nearest, min(self._nearest, to_goal)

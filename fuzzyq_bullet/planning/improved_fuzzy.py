@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.escape import Escape
@@ -29,8 +31,12 @@ class ImprovedFuzzyBase:
         self.mode: Mode = "routine"
 
     def sense(self, observation: Observation) -> Situation:
-        """Return what the detection lines and the controller tell: the first half."""
-        return self._routine.sense(observation)
+        """Choose the aim, and return what is seen towards it: the first half (Steps 4 to 9)."""
+        aim = None
+        if self._escape is not None:
+            aim = self._escape.aim(observation, self._breakout_at)
+            self.mode = aim.mode
+        return self._routine.sense(observation, aim)
 
     def act(
         self,
@@ -39,21 +45,18 @@ class ImprovedFuzzyBase:
         weights: tuple[float, float],
         breakout_at: float | None = None,
     ) -> Decision:
-        """Return the decision with these weights: the second half.
+        """Return the decision with these weights: the second half (Steps 10 and 11).
 
         Args:
             observation: What was observed.
             situation: What ``sense`` returned for it.
             weights: (ω1, ω2) of Eq. 17.
-            breakout_at: c_f in units of S_p, if another than that of the settings.
+            breakout_at: c_f in units of S_p from now on, if another than before.
         """
-        if self._escape is None:
-            decision = self._routine.step(situation, weights)
-        else:
-            c_f = self._breakout_at if breakout_at is None else breakout_at
-            decision = self._routine.step(situation, weights, c_f)
-            decision = self._escape.decide(decision, observation)
-        self.mode = decision.mode
+        if breakout_at is not None:
+            self._breakout_at = breakout_at
+        c_f = math.nan if self._escape is None else self._breakout_at
+        decision = self._routine.step(situation, weights, c_f)
         return safety_filter(decision, observation) if self._guard else decision
 
 

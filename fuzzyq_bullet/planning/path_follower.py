@@ -53,6 +53,7 @@ class Segment(NamedTuple):
     heading: float
     length: float
     reach: float = math.inf
+    exact: bool = False
 
 
 class PathFollower:
@@ -94,7 +95,9 @@ class PathFollower:
             return _aside(observation, heading, min(length, LEAST))
         # Every point but the last must be reached: the next one is not free from here.
         stop = length if len(points) > 1 else math.inf
-        return Segment(heading, length, 0.0 if _must_aim(observation, heading, length) else stop)
+        narrow = _is_narrow(observation, heading, length)
+        must = _must_aim(observation, heading, length, narrow)
+        return Segment(heading, length, 0.0 if must else stop, exact=narrow)
 
     def _drop(self, count: int) -> None:
         del self._points[:count]
@@ -107,7 +110,13 @@ class PathFollower:
         return now - self._since <= PATIENCE * observation.slowness
 
 
-def _must_aim(observation: Observation, heading: float, length: float) -> bool:
+def _is_narrow(observation: Observation, heading: float, length: float) -> bool:
+    """Return whether a heading slightly to either side is not free."""
+    beside = observation.sense([heading - NARROW, heading + NARROW])
+    return min(beside) < min(length, 2.0 * LEAST)
+
+
+def _must_aim(observation: Observation, heading: float, length: float, narrow: bool) -> bool:
     """Return whether the robot must turn on the spot before it drives a segment.
 
     It must if the segment is narrow, or so short and so far to the side that an arc misses its end.
@@ -115,10 +124,7 @@ def _must_aim(observation: Observation, heading: float, length: float) -> bool:
     turn = abs(wrap_angle(heading - observation.heading))
     if observation.motion is None or turn <= FACING:
         return False
-    if length <= BESIDE and turn > ASKEW:
-        return True
-    beside = observation.sense([heading - NARROW, heading + NARROW])
-    return min(beside) < min(length, 2.0 * LEAST)
+    return narrow or (length <= BESIDE and turn > ASKEW)
 
 
 def _aside(observation: Observation, heading: float, enough: float) -> Segment | None:

@@ -67,7 +67,7 @@ def _filtered_on_wheels(decision: Decision, observation: Observation, motion: Mo
         heading, ahead = further, length
     return decision._replace(
         heading=heading,
-        step=_usable(ahead, decision.step),
+        step=decision.step,
         reach=max(0.0, min(reach, decision.reach)),
         guard=ahead,
     )

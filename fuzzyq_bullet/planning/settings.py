@@ -8,7 +8,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import BaseModel, ConfigDict, Field, Strict
 
 _Number: TypeAlias = Annotated[float, Strict(), Field(allow_inf_nan=False)]
-Weight: TypeAlias = Annotated[_Number, Field(gt=0.0, le=2.0)]
+Weight: TypeAlias = Annotated[_Number, Field(gt=0.0, le=20.0)]
 
 
 class PlannerSettings(BaseModel):
@@ -32,6 +32,11 @@ class RoutineSettings(PlannerSettings):
     distance: Literal["middle", "least"] = Field(
         default="middle",
         description="Which line gives d: the middle one (Section 3.1) or the least (Step 9).",
+    )
+    clear: Literal["aim", "range"] = Field(
+        default="aim",
+        description="Where d = 5 and Df = 0: with the middle line free up to the aim (the paper), "
+        "or as far as the robot sees.",
     )
     rules: Literal["corrected", "printed"] = Field(
         default="corrected", description="Table 4 with its two misprints mended, or as printed."
