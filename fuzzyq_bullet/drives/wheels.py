@@ -47,9 +47,7 @@ class WheelsDriver(Driver):
             than 80 a second.
     """
 
-    def __init__(
-        self, world: World, scenario: Scenario, rate: float = DECISIONS_A_SECOND
-    ) -> None:
+    def __init__(self, world: World, scenario: Scenario, rate: float = DECISIONS_A_SECOND) -> None:
         steps = round(1.0 / TIME_STEP / rate) if rate > 0.0 else 0
         if steps < COMMAND_STEPS or abs(steps * TIME_STEP * rate - 1.0) > 1e-9:
             raise ValueError(f"{rate} decisions a second are no whole number of physics steps")

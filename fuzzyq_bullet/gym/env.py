@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import gymnasium
 import numpy as np
@@ -13,6 +13,7 @@ from gymnasium.error import ResetNeeded
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
+from fuzzyq_bullet.drives.wheels import DECISIONS_A_SECOND
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.gym.tasks import TaskSource
@@ -31,6 +32,10 @@ HALFWAY = 5.0
 """Distance (m) that is told as a half."""
 
 
+HOLD = 0.3
+"""How long an action lasts on wheels (s)."""
+
+
 class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     """What the environments share: tasks, physics, reward, picture.
 
@@ -45,6 +50,8 @@ class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         UserError: If there is no such render mode.
     """
 
+    rate: ClassVar[float] = DECISIONS_A_SECOND
+    """Decisions of an episode a second."""
     metadata = {"render_modes": ["rgb_array"], "render_fps": 3}  # noqa: RUF012 (as Gymnasium has it)
 
     def __init__(
@@ -86,7 +93,8 @@ class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         world = World(
             scenario.obstacles, scenario.arena, engine=self._engine, model=scenario.robot.spec
         )
-        self._scenario, self._episode = scenario, Episode(world, scenario)
+        self._scenario = scenario
+        self._episode = Episode(world, scenario, rate=self.rate)
         self._begin(scenario)
         return self._observed(), {"scenario": scenario.name, "seed": scenario.seed}
 

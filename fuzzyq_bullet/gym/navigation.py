@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.episode import Episode
-from fuzzyq_bullet.gym.env import EpisodeEnv, goal_seen, motion_seen
+from fuzzyq_bullet.gym.env import HOLD, EpisodeEnv, goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
 from fuzzyq_bullet.planning import Decision, Observation
 from fuzzyq_bullet.scenario import Scenario
@@ -58,6 +59,8 @@ class NavigationEnv(EpisodeEnv):
     Raises:
         UserError: If one of them is not allowed.
     """
+
+    rate: ClassVar[float] = 1.0 / HOLD
 
     def __init__(
         self,

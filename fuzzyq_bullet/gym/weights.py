@@ -1,9 +1,9 @@
-"""``fuzzyq_bullet/Weights-v0``: a policy sets ω1 and ω2 at each decision of the fuzzy planner."""
+"""``fuzzyq_bullet/Weights-v0``: a policy sets ω1 and ω2 of the fuzzy planner, every 0.3 s."""
 
 from __future__ import annotations
 
 from fuzzyq_bullet.episode import Episode
-from fuzzyq_bullet.gym.env import EpisodeEnv, goal_seen, motion_seen
+from fuzzyq_bullet.gym.env import HOLD, EpisodeEnv, goal_seen, motion_seen
 from fuzzyq_bullet.gym.tasks import DEFAULT_COUNT, Count, Source, TaskSource
 from fuzzyq_bullet.planning import MODES, Decision
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE
@@ -38,9 +38,8 @@ class WeightsEnv(EpisodeEnv):
         0. ω1 − 1, the weight of the step (Eq. 17): −1 stands, 1 doubles the step.
         1. ω2 − 1, the weight of the turn: −1 goes straight for the goal, 1 doubles the turn.
 
-    Both weights are 1 where the action is 0. Ways out of dead ends and the guard work as in
-    ``improved-fuzzy``: while one leads the robot out the weights do not matter, and no step is
-    longer than is free.
+    Both weights are 1 where the action is 0. The escape from dead ends and the safety filter work
+    as in ``improved-fuzzy``: the weights act towards temporary goals too.
 
     Observation, float32, shape (15,):
         0. to 2. ``left``, ``middle``, ``right``: free lengths of the detection lines, 0 to 1, the
@@ -62,8 +61,8 @@ class WeightsEnv(EpisodeEnv):
             what it asks to be ``random`` is drawn anew. What it sets for its planner stays, as far
             as ``improved-fuzzy`` has it. By default every episode is a random task that has a way.
         count: Obstacles of a random task, 0 to 150, or the least and the most as a pair.
-        drive: ``wheels`` or ``kinematic``, whatever the scenario says. A decision lasts 0.3 s on
-            wheels, and one step of the point robot otherwise.
+        drive: ``wheels`` or ``kinematic``, whatever the scenario says. An action lasts 0.3 s on
+            wheels, which are six decisions, and one step of the point robot otherwise.
         render_mode: ``rgb_array``, or None for no pictures.
 
     Raises:
@@ -107,7 +106,12 @@ class WeightsEnv(EpisodeEnv):
 
     def _act(self, episode: Episode, first: float, second: float) -> None:
         weights = (1.0 + first, 1.0 + second)
-        episode.advance(self._planner.act(self._now, self._situation, weights))
+        decisions = 1 if self._now.motion is None else round(HOLD * self.rate)
+        for left in reversed(range(decisions)):
+            episode.advance(self._planner.act(self._now, self._situation, weights))
+            if episode.outcome is not None or not left:
+                return
+            self._see(episode)
 
     def _shown(self) -> Decision:
         return Decision(

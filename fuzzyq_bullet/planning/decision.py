@@ -98,10 +98,13 @@ class Decision(NamedTuple):
     ] = (_NAN, _NAN)
     aim: Annotated[
         tuple[float, float],
-        _told("m", "What the middle line points at: the goal, or a point of a way out.", ("x", "y")),
+        _told(
+            "m", "What the middle line points at: the goal, or a point of a way out.", ("x", "y")
+        ),
     ] = (_NAN, _NAN)
     exact: Annotated[
-        float, _told("", "1 where it aims at a gap exactly, without the rules; 0 where they turn it.")
+        float,
+        _told("", "1 where it aims at a gap exactly, without the rules; 0 where they turn it."),
     ] = _NAN
     hopeless: bool = False
 

@@ -22,7 +22,6 @@ from fuzzyq_bullet.planning.path_follower import NEARER, PathFollower
 from fuzzyq_bullet.planning.ray_search import eased, ray_search
 from fuzzyq_bullet.planning.scan import Point
 
-
 ENOUGH = 1.0
 """How much must be free after the turn of the plain breakout, in S_p (Fig. 6)."""
 GAIN = 1.0
@@ -54,6 +53,7 @@ class Escape:
         self._graph = ExplorationGraph()
         self._frontier: Frontier | None = None
         self._follower = PathFollower([])
+        self._mode: Mode = "breakout"
         self._failed: list[Point] = []  # frontiers that were not reached at first
         self._left: list[Point] = []  # frontiers that were given up for better ones
         self._scanned_at: Point = (math.inf, math.inf)
@@ -94,7 +94,8 @@ class Escape:
             # The line to the goal must lead nearer than it does now: this did not help.
             self._mark = min(self._nearest, to_goal - middle)
             self._scan(observation)
-            return self._follow(observation, "breakout")
+            self._mode = "breakout"
+            return self._follow(observation)
         # The line that ended the avoidance is driven as it is. The controller takes over when the
         # robot is nearer than ever before.
         return goal._replace(exact=self._straight)
@@ -115,29 +116,34 @@ class Escape:
             self._frontier = None
         elif best[0] != tried:
             self._left.append(tried.point)
+            self._mode = "following"
             self._frontier, path = best
             self._follower = PathFollower(path)
 
-    def _follow(self, observation: Observation, mode: Mode = "following") -> Aim:
-        """Drive to the chosen frontier; if it is reached or cannot be reached, to the next one."""
+    def _follow(self, observation: Observation) -> Aim:
+        """Drive to the chosen frontier; if it is reached or cannot be reached, to the next one.
+
+        To the first it is the breakout, from there on the sustained avoidance.
+        """
         tried = self._frontier
+        moved = math.dist(observation.position, self._scanned_at)
         # A frontier that was given up once is not given up again: so this ends.
-        if tried is not None and not _is_at(tried.point, self._left):
-            if math.dist(observation.position, self._scanned_at) > LOOK_AGAIN:
-                self._scan_again(observation, tried)
+        if tried is not None and moved > LOOK_AGAIN and not _is_at(tried.point, self._left):
+            self._scan_again(observation, tried)
         while self._frontier is not None:
             tried = self._frontier
             if math.dist(observation.position, tried.point) > ARRIVED:
                 segment = self._follower.next(observation)
                 if segment is not None:
                     way = along_heading(
-                        observation, segment.heading, segment.length, mode, tried.point
+                        observation, segment.heading, segment.length, self._mode, tried.point
                     )
                     exact = segment.exact or _is_at(tried.point, self._failed)
                     return way._replace(exact=exact, reach=segment.reach)
                 self._fail(tried)
             self._scan(observation)
-        return towards_goal(observation)._replace(mode=mode, reach=0.0, hopeless=True)
+            self._mode = "following"
+        return towards_goal(observation)._replace(mode=self._mode, reach=0.0, hopeless=True)
 
     def _fail(self, tried: Frontier) -> None:
         """Try a frontier that was not reached a second time, then put it on the blacklist.

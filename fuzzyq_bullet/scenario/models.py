@@ -134,7 +134,7 @@ class Limits(Model):
         default=120.0, description="Simulated time (s)."
     )
     steps: Annotated[Count, Field(ge=1, le=1_000_000)] = Field(
-        default=3000, description="Decisions of the planner: M_s of Step 12."
+        default=100_000, description="Decisions of the planner: M_s of Step 12."
     )
 
 

@@ -60,6 +60,6 @@ def test_a_robot_that_turns_slowly_in_a_dead_end_is_waited_for():
 def test_whoever_is_slow_gets_out_of_a_trap_too():
     robot = Robot(max_speed=0.1, max_turn_rate=0.2, acceleration=0.1, turn_acceleration=0.5)
     task = random_task(3, layout="u-shape", count=None)
-    limits = Limits(time=2000.0, steps=10_000)
+    limits = Limits(time=2000.0)
     task = task.model_copy(update={"robot": robot, "limits": limits})
     assert run(with_options(task, planner="improved-fuzzy")).outcome == "goal"

@@ -158,7 +158,7 @@ def test_every_element_of_an_observation_says_something(name: str, make: Any) ->
     seen = []
     for seed in range(4):
         seen.append(env.reset(seed=seed)[0])
-        for _ in range(60):
+        for _ in range(150):
             observation, _, ended, cut, _ = env.step(env.action_space.sample() / 2)
             seen.append(observation)
             if ended or cut:
@@ -438,7 +438,7 @@ def test_a_twist_needs_wheels_and_stays_within_the_robots_limits(room: Scenario)
     told = Decision(heading=0.0, step=0.1)
     with World(room.obstacles, room.arena) as world:
         episode = Episode(world, room)
-        for _ in range(5):
+        for _ in range(20):
             episode.steer(Twist(9.0, 0.0), told)
         assert episode.now.speed == pytest.approx(room.robot.max_speed, abs=0.01)
         point = Episode(world, with_options(room, drive="kinematic"))

@@ -8,7 +8,7 @@ import pytest
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning import MODES, Decision, ImprovedFuzzySettings, Observation, RangeSensor
+from fuzzyq_bullet.planning import MODES, ImprovedFuzzySettings, Observation, RangeSensor
 from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
 from fuzzyq_bullet.planning.exploration import NEAR
@@ -16,7 +16,7 @@ from fuzzyq_bullet.planning.path_follower import PATIENCE as FOLLOWER_PATIENCE
 from fuzzyq_bullet.planning.path_follower import PathFollower, Segment
 from fuzzyq_bullet.planning.ray_search import ray_search
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder, Goal, Limits, Scenario, Start
-from tests.helpers.exploring import observe
+from tests.helpers.exploring import RANGE, WIDE, observe
 
 pytestmark = pytest.mark.slow
 
@@ -118,24 +118,15 @@ def test_an_escape_says_where_it_is_going():
         assert np.hypot(*(position[ticks[index] :] - target).T).min() < 0.5
 
 
-def blocked_ahead(position, difference):
-    """Return what the routine part and the escape see where only the way to the goal is blocked."""
+def blocked_ahead(position, more_room):
+    """Return what is observed where only the way to the goal is blocked, with room on one side."""
     bearing = math.atan2(-position[1], 100.0 - position[0])
 
     def sense(headings):
-        return np.array([0.1 if abs(one - bearing) < 0.5 else 1.0 for one in headings])
+        beside = [one - bearing for one in headings]
+        return [0.1 if abs(one) < 0.5 else 1.0 if one * more_room > 0.0 else 0.9 for one in beside]
 
-    lines = np.array([bearing + 0.8, bearing, bearing - 0.8])
-    routine = Decision(
-        heading=bearing,
-        step=0.1,
-        lines=lines,
-        lengths=sense(lines),
-        difference=difference,
-        weights=(1.0, 1.0),
-        breakout_at=1.0,
-    )
-    observation = Observation(
+    return Observation(
         time=0.0,
         position=position,
         heading=bearing,
@@ -145,17 +136,15 @@ def blocked_ahead(position, difference):
         goal_radius=0.2,
         range=1.0,
         radius=0.22,
-        sensor=RangeSensor(sense, lambda headings: sense(headings) + 0.2),
+        sensor=RangeSensor(sense, lambda headings: np.array(sense(headings)) + 0.2),
     )
-    return routine, observation
 
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_tie_of_both_sides_is_broken_by_the_side_with_more_room(sign):
-    plain = Escape(following=False)
-    decision = plain.decide(*blocked_ahead((0.0, 0.0), 2.0 * sign))
-    assert decision.mode == "breakout"
-    assert decision.heading * sign > 0.4
+    aim = Escape(following=False).aim(blocked_ahead((0.0, 0.0), sign), 1.0)
+    assert aim.mode == "breakout"
+    assert aim.bearing * sign > 0.4
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -193,23 +182,18 @@ class Walk:
     def __init__(self, field, goal):
         self.escape, self.field, self.goal, self.time = Escape(), field, goal, 0.0
 
-    def decide(self, here, *, middle=None, sense=None):
-        """Return the decision a quarter of a second later; ``middle``: the line to the goal."""
+    def aim(self, here, *, middle=None, sense=None):
+        """Return the aim a quarter of a second later; ``middle``: the line to the goal."""
         self.time += 0.25
-        seen = observe(self.field, here, goal=self.goal, time=self.time, sense=sense)
         bearing = math.atan2(self.goal[1] - here[1], self.goal[0] - here[0])
-        lines = np.array([bearing + 0.8, bearing, bearing - 0.8])
-        lengths = np.array(seen.sense(lines))
-        lengths[1] = lengths[1] if middle is None else middle
-        routine = Decision(
-            heading=7.0,
-            step=0.1,
-            lines=lines,
-            lengths=lengths,
-            weights=(1.0, 1.0),
-            breakout_at=1.0,
-        )
-        return self.escape.decide(routine, seen)
+        exact = sense or (lambda headings: self.field.free_distance(here, headings, WIDE, RANGE))
+
+        def told(headings):
+            free = zip(headings, exact(headings), strict=True)
+            return [middle if one == bearing and middle is not None else far for one, far in free]
+
+        seen = observe(self.field, here, goal=self.goal, time=self.time, sense=told)
+        return self.escape.aim(seen, 1.0)
 
 
 WALLED = Field(boxes=np.array([[0.7, 0.0, 0.1, 6.0, 0.0]]))
@@ -219,9 +203,9 @@ WALLED = Field(boxes=np.array([[0.7, 0.0, 0.1, 6.0, 0.0]]))
 def stalled():
     """A robot that came no nearer for too long, 0.43 m before the wall: its first breakout."""
     walk = Walk(WALLED, (5.0, 0.0))
-    while (decision := walk.decide((0.0, 0.0))).mode == "routine":
+    while (aim := walk.aim((0.0, 0.0))).mode == "routine":
         assert walk.time <= PATIENCE + 0.6
-    assert decision.mode == "breakout"
+    assert aim.mode == "breakout"
     assert walk.time > PATIENCE
     return walk
 
@@ -229,7 +213,7 @@ def stalled():
 def test_a_stalled_robot_does_not_leave_where_it_stalled():
     walk = stalled()
     for _ in range(10):
-        assert walk.decide((0.0, 0.0)).mode == "following"
+        assert walk.aim((0.0, 0.0)).mode != "routine"
 
 
 def test_it_leaves_where_the_line_leads_nearer_than_the_line_that_did_not_help():
@@ -237,46 +221,47 @@ def test_it_leaves_where_the_line_leads_nearer_than_the_line_that_did_not_help()
     as_before = math.dist((0.1, 1.0), (5.0, 0.0)) - 4.57
     for more in (-0.1, 0.0, GAIN * STEP_UNIT - 0.02):
         walk = stalled()
-        assert walk.decide((0.1, 1.0), middle=as_before + more).mode == "following"
+        assert walk.aim((0.1, 1.0), middle=as_before + more).mode != "routine"
     walk = stalled()
-    left = walk.decide((0.1, 1.0), middle=as_before + GAIN * STEP_UNIT + 0.02)
+    left = walk.aim((0.1, 1.0), middle=as_before + GAIN * STEP_UNIT + 0.02)
     assert left.mode == "routine"
-    # ... and it drives that line, not the controller's heading, until it is nearer than ever.
-    assert left.heading == pytest.approx(math.atan2(-1.0, 4.9))
+    # ... and it drives that line exactly, until it is nearer than ever: then the rules may turn it.
+    assert left.point == (5.0, 0.0)
+    assert left.exact
     assert not left.hopeless
-    away = walk.decide((0.0, 0.5), middle=0.6)
-    assert (away.mode, away.heading) == ("routine", pytest.approx(math.atan2(-0.5, 5.0)))
-    nearer = walk.decide((0.3, 0.2), middle=0.6)
-    assert (nearer.mode, nearer.heading) == ("routine", 7.0)
+    away = walk.aim((0.0, 0.5), middle=0.6)
+    assert (away.mode, away.exact) == ("routine", True)
+    nearer = walk.aim((0.3, 0.2), middle=0.6)
+    assert (nearer.mode, nearer.exact) == ("routine", False)
 
 
 def test_it_leaves_where_the_line_leads_to_the_goal():
     walk = stalled()
-    assert walk.decide((4.0, 1.0), middle=math.dist((4.0, 1.0), (5.0, 0.0))).mode == "routine"
+    assert walk.aim((4.0, 1.0), middle=math.dist((4.0, 1.0), (5.0, 0.0))).mode == "routine"
 
 
 def test_a_blocked_robot_looks_at_once():
     walk = Walk(WALLED, (5.0, 0.0))
-    assert walk.decide((0.0, 0.0)).mode == "routine"
-    decision = walk.decide((0.3, 0.0))  # 0.13 m before it stops
-    assert decision.mode == "breakout"
-    assert abs(decision.target[1]) > 0.5
+    assert walk.aim((0.0, 0.0)).mode == "routine"
+    aim = walk.aim((0.3, 0.0))  # 0.13 m before it stops
+    assert aim.mode == "breakout"
+    assert abs(aim.target[1]) > 0.5
 
 
-def test_where_it_comes_nearer_it_leaves_the_controller_alone():
+def test_where_it_comes_nearer_the_goal_is_the_aim():
     walk = Walk(WALLED, (5.0, 0.0))
     for k in range(30):
-        decision = walk.decide((-2.0 + 0.05 * k, 0.0))
-        assert (decision.mode, decision.heading) == ("routine", 7.0)
+        aim = walk.aim((-2.0 + 0.05 * k, 0.0))
+        assert (aim.mode, aim.point, aim.exact) == ("routine", (5.0, 0.0), False)
 
 
-def test_an_exit_that_cannot_be_reached_is_tried_twice_and_then_given_up():
+def test_a_frontier_that_cannot_be_reached_is_tried_twice_and_then_given_up():
     walk = stalled()
     held = []  # the robot is held where it is, though all ways seem free
-    while not (decision := walk.decide((0.0, 0.0))).hopeless:
-        held.append(decision.target)
+    while not (aim := walk.aim((0.0, 0.0))).hopeless:
+        held.append(aim.target)
         assert len(held) < 2000
-    tries = [(target, len(list(decisions))) for target, decisions in groupby(held)]
+    tries = [(target, len(list(aims))) for target, aims in groupby(held)]
     targets = {target for target, _ in tries}
     assert len(targets) > 3
     # None is come back to before all the others were tried.
@@ -286,55 +271,54 @@ def test_an_exit_that_cannot_be_reached_is_tried_twice_and_then_given_up():
     assert counts[: len(targets) - 1] == pytest.approx([twice] * (len(targets) - 1), abs=2)
     assert max(counts) <= twice + 2
     assert len(tries) <= 2 * len(targets)
-    assert decision.step == decision.reach == 0.0
+    assert aim.reach == 0.0
 
 
 def test_where_no_way_is_free_it_knows_at_once_that_it_is_hopeless():
     walk = Walk(Field(arena=(0.46, 0.46)), (5.0, 0.0))
-    decision = walk.decide((0.23, 0.23))
-    assert decision.hopeless
-    assert decision.step == decision.reach == 0.0
+    aim = walk.aim((0.23, 0.23))
+    assert aim.hopeless
+    assert aim.reach == 0.0
 
 
 def test_where_ways_are_seen_but_none_can_be_gone_it_ends_hopeless_soon():
     walk = Walk(WALLED, (5.0, 0.0))
-    walk.decide((0.3, 0.0))
+    walk.aim((0.3, 0.0))
     for _ in range(60):
-        decision = walk.decide((0.3, 0.0), sense=lambda headings: np.zeros(len(headings)))
-        if decision.hopeless:
+        aim = walk.aim((0.3, 0.0), sense=lambda headings: np.zeros(len(headings)))
+        if aim.hopeless:
             break
-        assert decision.mode == "following"
-    assert decision.hopeless
+        assert aim.mode != "routine"
+    assert aim.hopeless
 
 
-def test_at_an_exit_it_looks_again_and_goes_on_to_another():
+def test_at_a_frontier_it_looks_again_and_goes_on_to_another():
     walk = stalled()
-    first = walk.decide((0.0, 0.0)).target
-    second = walk.decide(first)
+    first = walk.aim((0.0, 0.0)).target
+    second = walk.aim(first)
     assert second.mode == "following"
     assert math.dist(second.target, first) > NEAR
 
 
 def test_near_the_goal_a_line_that_leads_to_it_is_taken_though_little_is_to_gain():
     walk = Walk(Field(boxes=np.array([[0.4, 0.0, 0.1, 0.3, 0.0]])), (0.2, 0.0))
-    assert walk.decide((0.0, 0.0), middle=0.1).mode == "breakout"
-    assert walk.decide((0.15, 0.3), middle=0.25).mode == "following"
-    assert walk.decide((0.15, 0.3), middle=0.31).mode == "routine"
+    assert walk.aim((0.0, 0.0), middle=0.1).mode == "breakout"
+    assert walk.aim((0.15, 0.3), middle=0.25).mode != "routine"
+    assert walk.aim((0.15, 0.3), middle=0.31).mode == "routine"
 
 
 def test_a_line_that_leads_nearer_but_is_blocked_is_not_taken():
     walk = stalled()
-    assert walk.decide((0.8, 0.0), middle=0.1).mode == "following"
+    assert walk.aim((0.8, 0.0), middle=0.1).mode != "routine"
 
 
 def test_a_robot_that_comes_no_nearer_but_sees_nothing_on_its_line_goes_on():
     walk = Walk(Field(), (5.0, 0.0))
-    assert {walk.decide((0.0, 0.0)).mode for _ in range(40)} == {"routine"}
+    assert {walk.aim((0.0, 0.0)).mode for _ in range(40)} == {"routine"}
 
 
-def test_it_drives_each_leg_of_its_course_and_no_farther(monkeypatch):
+def test_it_aims_at_the_end_of_each_leg_of_its_way(monkeypatch):
     walk = stalled()
     monkeypatch.setattr(PathFollower, "next", lambda self, observation: Segment(1.2, 0.03, 0.02))
-    decision = walk.decide((0.0, 0.0))
-    assert (decision.heading, decision.reach) == (1.2, 0.02)
-    assert decision.step <= 0.03
+    aim = walk.aim((0.0, 0.0))
+    assert (aim.bearing, aim.distance, aim.reach) == (1.2, 0.03, 0.02)

@@ -328,7 +328,7 @@ def test_a_robot_put_back_is_where_it_decided(drive: str) -> None:
         hits_end=False,
     )
     episode.begin(1)
-    for _ in range(60):
+    for _ in range(400):
         before = episode.observe()
         reward = episode.advance(act(sense(before), STRAIGHT))
         if reward.contact:
