@@ -13,9 +13,12 @@ from typing import NamedTuple
 from fuzzyq_bullet.fuzzy.inference import Inference
 from fuzzyq_bullet.fuzzy.paper import paper_controller
 from fuzzyq_bullet.planning.aim import Aim, towards_goal
-from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.settings import FuzzySettings, RoutineSettings
+
+NO_RULES = Inference((0.0,) * 5, (0.0,) * 5, ((0.0,) * 5,) * 5, turn=0.0, stride=LONGEST_STRIDE)
+"""What is inferred without a controller: straight on, with the longest step."""
 
 
 class Situation(NamedTuple):
@@ -57,7 +60,11 @@ class Routine:
 
     def __init__(self, settings: RoutineSettings) -> None:
         self._settings = settings
-        self._controller = paper_controller(rules=settings.rules, samples=settings.samples)
+        self._controller = (
+            None
+            if settings.rules == "none"
+            else paper_controller(rules=settings.rules, samples=settings.samples)
+        )
 
     def sense(self, observation: Observation, aim: Aim | None = None) -> Situation:
         """Cast the three lines (Steps 4 to 6) and ask the controller (Step 9; Eqs. 13, 14).
@@ -88,7 +95,9 @@ class Routine:
             distance=distance,
             difference=difference,
             clear=clear,
-            inferred=self._controller.infer(distance, difference),
+            inferred=(
+                self._controller.infer(distance, difference) if self._controller else NO_RULES
+            ),
             unit=unit,
             jumps=observation.motion is None,
         )

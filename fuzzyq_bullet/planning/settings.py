@@ -38,8 +38,10 @@ class RoutineSettings(PlannerSettings):
         description="Where d = 5 and Df = 0: with the middle line free up to the aim (the paper), "
         "or as far as the robot sees.",
     )
-    rules: Literal["corrected", "printed"] = Field(
-        default="corrected", description="Table 4 with its two misprints mended, or as printed."
+    rules: Literal["corrected", "printed", "none"] = Field(
+        default="corrected",
+        description="Table 4 with its two misprints mended, or as printed; none: no controller, "
+        "straight to the aim with N_s = 2.",
     )
     samples: Annotated[int, Strict(), Field(ge=3, le=10_001)] = Field(
         default=101, description="n of Eq. 22: points of the centroid. The paper says 5."

@@ -16,6 +16,7 @@ from fuzzyq_bullet.scenario.layouts.scatter import Random  # the default comes f
 from fuzzyq_bullet.scenario.layouts.traps import Arc, LongWall, Semicircle, UShape  # isort: skip
 from fuzzyq_bullet.scenario.layouts.rectangles import Rectangles  # isort: skip
 from fuzzyq_bullet.scenario.layouts.maze import Maze  # isort: skip
+from fuzzyq_bullet.scenario.layouts.cellular import Cellular  # isort: skip
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.scenario.models import Scenario
@@ -47,6 +48,7 @@ __all__ = [
     "LAYOUTS",
     "AnyLayout",
     "Arc",
+    "Cellular",
     "Layout",
     "LongWall",
     "Maze",
