@@ -38,8 +38,8 @@ class Weights(NamedTuple):
     breakout_at: float
 
 
-STEPS = (2.0, 10.0)
-"""As the rules say, or almost always at full speed: the safety filter sees to the rest."""
+STEPS = (5.0, 10.0)
+"""Slower near obstacles, or almost always at full speed: the safety filter sees to the rest."""
 TURNS = (0.25, 0.5)
 BREAKOUTS = (2.5, 4.0)
 """Break out halfway, or almost as soon as an obstacle is seen ahead."""

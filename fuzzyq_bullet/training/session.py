@@ -64,7 +64,7 @@ SHIPPED = {
     for config in (
         TrainingConfig("q-learning", episodes=200, drive="kinematic", seed=0),
         TrainingConfig("q-lambda", episodes=200, drive="kinematic", seed=0),
-        TrainingConfig("fuzzy-q-lambda", episodes=600, drive="wheels", seed=1),
+        TrainingConfig("fuzzy-q-lambda", episodes=300, drive="wheels", seed=1),
     )
 }
 """How each policy in ``assets/policies`` is made, by planner."""
