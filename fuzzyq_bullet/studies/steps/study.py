@@ -18,7 +18,7 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, Weights
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.studies.options import PAPER, described, one_drive_of, planner_of, planners_of
-from fuzzyq_bullet.studies.plan import FieldsPlan, Plan
+from fuzzyq_bullet.studies.plan import FieldsPlan, Plan, limits_with
 from fuzzyq_bullet.studies.registry import register_study
 from fuzzyq_bullet.studies.selection import (
     ONE,
@@ -105,6 +105,7 @@ class Steps(Study):
             counts=(self.count,),
             runs=self.runs,
             seed=self.seed,
+            limits=limits_with(drive),
         )
         yield Stage("steps", plan, planners, notes=notes)
 

@@ -12,7 +12,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.options import PAPER, counts_of, described, one_drive_of, planners_of
-from fuzzyq_bullet.studies.plan import FieldsPlan
+from fuzzyq_bullet.studies.plan import FieldsPlan, limits_with
 from fuzzyq_bullet.studies.registry import register_study
 from fuzzyq_bullet.studies.study import Findings, Picture, Results, Study, Table, cell, numbers
 from fuzzyq_bullet.studies.success.table import (
@@ -76,6 +76,7 @@ class Success(Study):
             counts=counts,
             runs=self.runs,
             seed=self.seed,
+            limits=limits_with(one_drive_of(self.drive)),
         )
 
     def findings(self, results: Results) -> Findings:
