@@ -11,6 +11,7 @@ from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
+from fuzzyq_bullet.planning.settings import RecoverySettings
 from fuzzyq_bullet.scenario import Drive, Limits, Robot
 from fuzzyq_bullet.studies.episodes import Environment, Row
 from fuzzyq_bullet.studies.options import counts_of, drives_of, planner_of
@@ -33,6 +34,13 @@ PATH_RATIOS = {25: 1.10, 50: 1.25, 125: 2.0}
 """Most that the mean path may be, in shortest paths, by the number of scattered obstacles."""
 
 
+VARIANTS = {
+    "no-controller": "no controller: straight to the aim at full speed",
+    "no-memory": "no memory: breakouts that are not sustained",
+}
+"""What rows call the variants of a planner, and what they are."""
+
+
 class EscapePlan(Plan):
     """Scatter fields, rectangles and traps, each with every drive.
 
@@ -44,6 +52,7 @@ class EscapePlan(Plan):
         traps: How many traps.
         rectangles: Numbers of rectangles.
         seed: Of the sweep.
+        beside: Variants of the planner that run in the same environments.
         limits: When an episode is given up.
     """
 
@@ -54,6 +63,7 @@ class EscapePlan(Plan):
     traps: Number = 100
     rectangles: tuple[Number, ...] = (30, 40, 60)
     seed: Seed = 0
+    beside: tuple[str, ...] = ()
     limits: Limits = PATIENT
 
     def environments(self) -> Iterator[Environment]:
@@ -68,8 +78,9 @@ class EscapePlan(Plan):
     def schedule(self) -> Iterator[Episode]:
         """Yield all episodes, those of one environment one after the other."""
         for where in self.environments():
-            for drive in self.drives:
-                yield where, self.planner["name"], drive
+            for name in (self.planner["name"], *self.beside):
+                for drive in self.drives:
+                    yield where, name, drive
 
 
 @register_study
@@ -98,14 +109,18 @@ class Escape(Study):
     drive: str = Field("both", description="wheels (physics), kinematic, or both.")
     planner: str = Field("improved-fuzzy", description="Planner to ask.")
     weights: str | None = Field(None, description="Its weights ω1,ω2; 1,1 where it takes any.")
+    beside: bool = Field(
+        False, description="Run it without its controller, and without its memory, as well."
+    )
 
     def planner_set(self) -> dict[str, PlannerSettings]:
-        """Return the one that is asked."""
-        return {self.planner: planner_of(self.planner, self.weights)}
+        """Return the one that is asked, and its variants."""
+        settings = planner_of(self.planner, self.weights)
+        return {self.planner: settings, **(variants_of(settings) if self.beside else {})}
 
     def plan(self) -> EscapePlan:
         """Return what is run; asking for nothing is a mistake too."""
-        (settings,) = self.planner_set().values()
+        settings, *beside = self.planner_set().values()
         plan = EscapePlan(
             sweep=self.name,
             planner=settings.model_dump(mode="json"),
@@ -115,6 +130,7 @@ class Escape(Study):
             traps=self.traps,
             rectangles=counts_of(self.rectangles, "--rectangles"),
             seed=self.seed,
+            beside=tuple(VARIANTS) if beside else (),
         )
         if not any(True for _ in plan.environments()):
             raise UserError("nothing to run: --counts, --traps and --rectangles all ask for none")
@@ -134,6 +150,7 @@ class Escape(Study):
             planner=plan.planner["name"],
             weights=None if not weights else ",".join(f"{one:g}" for one in weights),
             seed=plan.seed,
+            beside=bool(plan.beside),
         )
 
     def heading(self) -> str:
@@ -148,7 +165,7 @@ class Escape(Study):
     def findings(self, results: Results) -> Findings:
         """Return the table of families, with the targets that are missed."""
         swept = results["escape"]
-        lines = table_of(swept.rows)
+        lines = table_of(row for row in swept.rows if row.planner == self.planner)
         given = swept.plan.planner.get("weights")
         named = self.planner
         if given is not None:
@@ -165,8 +182,27 @@ class Escape(Study):
             for target in line.targets
             if not target.met
         ]
-        table = _table(lines, named, self.seed)
-        return Findings((table,), {**told, "rows": rows}, missed=tuple(missed))
+        tables, beside = [_table(lines, named, self.seed)], {}
+        for name in swept.plan.beside:
+            variant = table_of(row for row in swept.rows if row.planner == name)
+            tables.append(_table(variant, f"{named}, {VARIANTS[name]}", self.seed))
+            beside[name] = [asdict(line) for line in variant]
+        told = {**told, "rows": rows, **({"beside": beside} if beside else {})}
+        return Findings(tuple(tables), told, missed=tuple(missed))
+
+
+def variants_of(settings: PlannerSettings) -> dict[str, PlannerSettings]:
+    """Return the planner without its controller, and without its memory, by what rows call them.
+
+    Raises:
+        UserError: If it has neither.
+    """
+    if not isinstance(settings, RecoverySettings):
+        raise UserError(f"--beside: {settings.name} has no controller and no memory to leave out")
+    return {
+        "no-controller": settings.model_copy(update={"rules": "none"}),
+        "no-memory": settings.model_copy(update={"following": False}),
+    }
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import Call
 
+from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import settings_for
 from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.escape import TRAPS, EscapePlan, Line, table_of
@@ -141,3 +145,15 @@ def test_a_plan_takes_traps_in_turn_and_every_environment_with_every_drive() -> 
     assert len(jobs) == len({job.key for job in jobs}) == 2 * (2 + 6 + 2)
     traps = [where.layout for where in plan.environments() if where.count is None]
     assert traps == [*TRAPS, *TRAPS[:2]]
+
+
+def test_variants_of_a_planner_are_told_beside_it(tmp_path: Path, inside: Call) -> None:
+    few = ("--counts", "5", "--runs", "1", "--traps", "0", "--rectangles", "none")
+    command = ("bench", "escape", *few, "--drive", "kinematic", "--beside", "--json")
+    done = inside(*command, "--out", tmp_path)
+    told = json.loads(done.stdout)
+    assert set(told["beside"]) == {"no-controller", "no-memory"}
+    assert [line["family"] for line in told["beside"]["no-controller"]] == ["scatter"]
+    assert len(told["rows"]) == 1  # the planner's own, as without --beside
+    with pytest.raises(UserError, match="fuzzy has no controller and no memory to leave out"):
+        inside(*command, "--planner", "fuzzy", "--out", tmp_path / "other")
