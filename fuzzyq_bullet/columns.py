@@ -85,22 +85,24 @@ def documented(doc: str | None, columns: Columns) -> str:
 def check_arrays(group: str, columns: Columns, arrays: Mapping[str, Any]) -> dict[str, Any]:
     """Return the arrays of a group from those of a record's file, each as it was declared.
 
+    A column that may be left blank and is not there is blank: an older version did not know it.
+
     Args:
         group: Name of the group: an array is called ``group.column``.
         columns: What was declared.
         arrays: What was read.
 
     Raises:
-        ValueError: If an array is missing, of another type, length or shape, or holds a number
+        ValueError: If another array is missing, of another type, length or shape, or holds a number
             that no run leaves.
     """
     found: dict[str, Any] = {}
     rows = None
     for key, column in columns.items():
         name = f"{group}.{key}"
-        if name not in arrays:
+        if name not in arrays and not (column.blank and rows):
             raise ValueError(f"{name} is missing")
-        array = arrays[name]
+        array = arrays[name] if name in arrays else np.full((*(rows or ()), *column.shape), np.nan)
         rows = array.shape[:1] if rows is None else rows
         if array.dtype != column.dtype:
             raise ValueError(f"{name} holds {array.dtype} instead of {column.dtype}")

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
 from fuzzyq_bullet.planning import MODES
+from fuzzyq_bullet.rules_turn import share_turned
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.trajectory import Outcome, Trajectory
 from fuzzyq_bullet.wording import plain
@@ -59,6 +60,8 @@ class Result(BaseModel):
         collisions: Contacts: 0, or 1, since the first one ends the run.
         turning_rad: Sum of all changes of direction, left and right (rad).
         modes: Decisions in each mode.
+        rules_turn: Share of decisions in which the fuzzy rules turn the robot off its aim by more
+            than 3° (ω2·N_a·A_p), 0 to 1; null for a planner without rules.
         digest: Hash of the exact trajectory.
         version: Version of fuzzyq_bullet.
     """
@@ -80,6 +83,7 @@ class Result(BaseModel):
     collisions: int
     turning_rad: float
     modes: ModeCounts
+    rules_turn: float | None = None
     digest: str
     version: str
 
@@ -93,6 +97,7 @@ def result_of(trajectory: Trajectory) -> Result:
     counts = np.bincount(trajectory.decisions.mode, minlength=len(MODES))
     driven = float(np.hypot(*moves.T).sum())
     shortest = _shortest(scenario)
+    turned = share_turned(trajectory)
     weighted = None if shortest is None else spl(trajectory.outcome == "goal", shortest, driven)
     return Result(
         scenario=scenario.name,
@@ -110,6 +115,7 @@ def result_of(trajectory: Trajectory) -> Result:
         collisions=int(trajectory.collision is not None),
         turning_rad=round(float(np.abs(turns).sum()), 6),
         modes=ModeCounts(**dict(zip(MODES, counts.tolist(), strict=True))),
+        rules_turn=None if turned is None else round(turned, 6),
         digest=trajectory.digest(),
         version=trajectory.version,
     )

@@ -41,6 +41,7 @@ RESULT_KEYS = [
     "collisions",
     "turning_rad",
     "modes",
+    "rules_turn",
     "digest",
     "version",
 ]

@@ -120,6 +120,8 @@ def drive(
                     "breakout_at": 1.0,
                     "guard": math.nan,
                     "target": (math.nan, math.nan),
+                    "aim": goal,
+                    "exact": 0.0,
                 }
             )
         error = math.remainder(wish - heading, math.tau)
