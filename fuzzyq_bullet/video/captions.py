@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.planning.decision import MODES
+from fuzzyq_bullet.rules_turn import has_rules
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import reason, struck
 from fuzzyq_bullet.video.paint import DirtyRegion
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 _CLOCK = Rect(HEADER.right - 240, HEADER.y, 240, HEADER.height)
 _BADGE = 176
 _PILL = (164, 38)
+_BADGES = (19, 17, 15, 13)
 _CARD = Rect(SCENE.x + 120, SCENE.y + 20, 640, 132)
 _LOWER = SCENE.bottom - 20 - _CARD.height
 _MODE_COLOURS = {"routine": style.LINE, "breakout": style.TARGET, "following": style.TARGET}
@@ -29,6 +31,12 @@ _OUTCOMES = {
     "collision": ("COLLISION", style.DANGER),
     "timeout": ("TIME IS UP", style.HEAT),
     "stuck": ("STUCK: no way on", style.HEAT),
+}
+_ENDINGS = {
+    "goal": "In the goal",
+    "collision": "Ran into something",
+    "timeout": "Time is up before the goal",
+    "stuck": "Finds no way on: stops",
 }
 
 
@@ -80,6 +88,9 @@ class Story:
     def __init__(self, trajectory: Trajectory) -> None:
         self._trajectory = trajectory
         self._mode = trajectory.decisions.mode
+        # The modes are the paper's. A planner without them is called by its name.
+        plain = not (self._mode.any() or has_rules(trajectory.decisions))
+        self._badge = planner_name(trajectory).upper() if plain else ""
         self._card = paint.card(STORY)
         self._decision: tuple[int, bool] | None = None
         self._shown: tuple[str, str] | None = None
@@ -102,18 +113,21 @@ class Story:
             pill = paint.mask((0, 0, *_PILL), paint.rounded(_PILL, 19))
             image.paste(colour, (12, 10), pill)
             middle = ((12 + _BADGE) / 2, STORY.height / 2 + 7)
-            pen.text(middle, mode.upper(), ink, style.font(19, True), anchor="ms")
+            text, size = style.fitting(self._badge or mode.upper(), _PILL[0] - 20, _BADGES, True)
+            pen.text(middle, text, ink, style.font(size, True), anchor="ms")
         room = STORY.width - _BADGE - 34
-        text, size = style.fitting(sentence, room, (30, 27, 24, 21), bold=True)
+        text, size = style.fitting(sentence, room, (30, 27, 24, 21, 19), bold=True)
         y = STORY.height // 2 + round(size * 0.36)
         paint.write(image, (_BADGE + 18, y), text, style.TEXT, size, bold=True)
         return DirtyRegion(STORY.x, STORY.y, image)
 
     def sentence(self, decision: int, *, over: bool = False) -> str:
-        """Return what is said of a decision; after a collision, what the robot ran into."""
-        if over and self._trajectory.collision is not None:
+        """Return what is said of a decision; at the end, how the run ended."""
+        if not over:
+            return reason(self._trajectory, decision)
+        if self._trajectory.collision is not None:
             return f"Ran into {struck(self._trajectory)}"
-        return reason(self._trajectory, decision)
+        return _ENDINGS[self._trajectory.outcome]
 
 
 def outcome_lines(trajectory: Trajectory) -> tuple[str, str]:

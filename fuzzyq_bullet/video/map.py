@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for
-from fuzzyq_bullet.video.marks import began, cross, diamond, grid_step, left_off
+from fuzzyq_bullet.video.legend import legend, note
+from fuzzyq_bullet.video.marks import began, cross, diamond, grid_step, left_off, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.style import MAP
 from fuzzyq_bullet.video.timeline import Sensed, Steady
@@ -48,6 +49,7 @@ class Map:
         self._struck = self._outline_struck(trajectory)
         self._avoided: int | None = None
         self._marked = 0
+        self._aim: tuple[float, float] | None = None
         self._steady = Steady(self._scale)
         self._sensed: Sensed | None = None
         self._changed: paint.Box | None = (0, 0, *MAP.size)
@@ -64,7 +66,13 @@ class Map:
         if not self._steady.moved(moment) and sensed is self._sensed:
             return None
         self._sensed = sensed
-        grown = paint.joined([self._trail.follow(moment.tick), self._decorate(moment.decision)])
+        grown = paint.joined(
+            [
+                self._trail.follow(moment.tick),
+                self._decorate(moment.decision),
+                self._point_at(None if sensed is None else sensed.aim),
+            ]
+        )
         centre = self.spot([moment.position])[0]
         radius = max(_LEAST_ROBOT, self._radius * self._scale)
         strokes = [] if sensed is None else [self._line(sensed, *line) for line in sensed.lines]
@@ -116,6 +124,13 @@ class Map:
             changed.append(self._trail.lay_below(outline))
         return paint.joined(changed)
 
+    def _point_at(self, aim: tuple[float, float] | None) -> paint.Box | None:
+        """Mark the aim (m)."""
+        if aim == self._aim:
+            return None
+        self._aim = aim
+        return self._trail.pin([] if aim is None else reticle(self.spot([aim])[0], MAP.size))
+
     def _outline(self, group: int) -> paint.Inked | None:
         """Return a line about a group of obstacles, or along a wall, as far as they are seen."""
         x0, y0, x1, y1 = self._area
@@ -166,11 +181,14 @@ class Map:
         assert field is not None
         step = grid_step(max(x1 - x0, y1 - y0))
         seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
-        if field[3] <= MAP.height - 18 or field[0] > 100:
-            note = (14, MAP.height - 6)
-            paint.write(image, note, f"squares of {step:g} m", style.MUTED, 14)
-        if field[3] <= MAP.height - 18 and self._avoidance.marks:
-            _legend(image)
+        note(image, field, f"squares of {step:g} m")
+        decisions = trajectory.decisions
+        legend(
+            image,
+            field,
+            aims=bool(np.isfinite(decisions.aim).any()),
+            ways_out=bool(self._avoidance.marks),
+        )
 
         def ground(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
             pen.rectangle(at([low, high]), fill=255)
@@ -231,20 +249,6 @@ def _draw_ring(image: Image.Image, box: paint.Box, outline: Floats) -> None:
         paint.polyline(pen, at([*outline, outline[0]]), 255, 3.0 * at.factor)
 
     paint.stamp(image, box, outline, 4, style.DANGER, draw)
-
-
-def _legend(image: Image.Image) -> None:
-    """Say what the marks of the ways out are, at the bottom right."""
-    x, y = MAP.width - 14.0, MAP.height - 6
-    for text, draw in (("routine", left_off), ("breakout", began), ("aim", None)):
-        paint.write(image, (x, y), text, style.MUTED, 14, align="r")
-        x -= style.text_width(text, 14) + 12
-        if draw is None:
-            diamond(image, (0, 0, *MAP.size), (x, y - 5), 6.0)
-        else:
-            for colour, drawn in draw((x, y - 5), MAP.size):
-                drawn.lay(image, (0, 0, *MAP.size), colour)
-        x -= 20
 
 
 def _robot(

@@ -28,6 +28,26 @@ def diamond(image: Image.Image, box: paint.Box, at: ArrayLike, size: float) -> N
     paint.stamp(image, box, shape, 3, style.TARGET, draw)
 
 
+def reticle(at: ArrayLike, size: tuple[int, int], reach: float = 13.0) -> list[paint.Inked]:
+    """Return the mark of the aim, in a picture of ``size``: four strokes about an open middle."""
+    x, y = np.asarray(at, dtype=np.float64).tolist()
+    strokes = [
+        [(x + dx * part, y + dy * part) for part in (0.42 * reach, reach)]
+        for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1))
+    ]
+    found = []
+    for colour, width in ((style.PAGE, 6.0), (style.AIM, 3.0)):
+
+        def draw(pen: ImageDraw.ImageDraw, scaled: paint.Scaled, width: float = width) -> None:
+            for stroke in strokes:
+                paint.polyline(pen, scaled(stroke), 255, width * scaled.factor)
+
+        drawn = paint.layer([(x, y)], reach + 4, size, draw)
+        if drawn is not None:
+            found.append((colour, drawn))
+    return found
+
+
 def began(at: ArrayLike, size: tuple[int, int]) -> list[paint.Inked]:
     """Return the mark of the place where a way out began, in a picture of ``size``: a dot."""
     return _discs(at, size, ((style.PAGE, 6.0, 0.0), (style.TARGET, 4.6, 0.0)))

@@ -264,6 +264,7 @@ class Trail:
         self._tick = 0
         self._below: Inked | None = None
         self._above: list[Inked] = []
+        self._pinned: list[Inked] = []
 
     def lay_below(self, shape: Inked | None) -> Box | None:
         """Show one shape beneath the way, in place of the last; return the box that changed."""
@@ -279,6 +280,14 @@ class Trail:
         for _, drawn in shapes:
             self._compose(drawn.box)
         return joined(drawn.box for _, drawn in shapes)
+
+    def pin(self, shapes: Sequence[Inked]) -> Box | None:
+        """Show shapes on top of all, in place of the last pinned; return the box that changed."""
+        boxes = [drawn.box for _, drawn in (*self._pinned, *shapes)]
+        self._pinned = list(shapes)
+        for box in boxes:
+            self._compose(box)
+        return joined(boxes)
 
     def follow(self, tick: int) -> Box | None:
         """Draw the way up to a tick and return the box that changed.
@@ -312,7 +321,7 @@ class Trail:
         if self._below is not None:
             self._below[1].lay(patch, box, self._below[0])
         patch.paste(style.PATH, mask=self._line.crop(box))
-        for colour, drawn in self._above:
+        for colour, drawn in (*self._above, *self._pinned):
             drawn.lay(patch, box, colour)
         self.image.paste(patch, box)
 

@@ -12,7 +12,7 @@ from PIL import Image, ImageChops, ImageDraw
 
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera, photograph
 from fuzzyq_bullet.video import meshes, paint, style
-from fuzzyq_bullet.video.marks import cross, diamond, grid_step
+from fuzzyq_bullet.video.marks import cross, diamond, grid_step, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.style import SCENE
 from fuzzyq_bullet.video.timeline import Sensed, Steady
@@ -47,6 +47,7 @@ class Scene:
         still = _decorated(picture, ground, trajectory, self.lens)
         self._trail = paint.Trail(still, trajectory.ticks.position, self._seen, ground)
         self._sensed: Sensed | None = None
+        self._aim: tuple[float, float] | None = None
         away = math.dist(self.lens.eye, self.lens.target)
         self._steady = Steady(self.lens.pixels_per_radian() / away)
         self._stains: list[tuple[style.Colour, paint.Layer]] = []
@@ -67,7 +68,12 @@ class Scene:
         """Return what changed since the last moment drawn; ``hit`` marks a collision (m)."""
         if not self._steady.moved(moment) and sensed is self._sensed:
             return None
-        grown = self._trail.follow(moment.tick)
+        grown = paint.joined(
+            [
+                self._trail.follow(moment.tick),
+                self._point_at(None if sensed is None else sensed.aim),
+            ]
+        )
         if sensed is not self._sensed:
             self._sensed = sensed
             self._stains = self._stained(sensed)
@@ -108,6 +114,13 @@ class Scene:
     def height_of(self, position: tuple[float, float]) -> float:
         """Return how far down in the picture a point of the ground (m) is seen (pixels)."""
         return float(np.nan_to_num(self._seen([position])[0, 1]))
+
+    def _point_at(self, aim: tuple[float, float] | None) -> paint.Box | None:
+        """Mark the aim (m)."""
+        if aim == self._aim:
+            return None
+        self._aim = aim
+        return self._trail.pin([] if aim is None else reticle(self._seen([aim])[0], SCENE.size))
 
     def _seen(self, points: ArrayLike) -> Floats:
         flat = np.asarray(points, dtype=np.float64).reshape(-1, 2)

@@ -85,6 +85,8 @@ MIDDLE: Colour = (240, 228, 66)
 RIGHT: Colour = (230, 110, 30)
 LINES = (LEFT, MIDDLE, RIGHT)
 GOAL: Colour = (20, 184, 138)
+AIM: Colour = MIDDLE
+"""The middle line points at the aim."""
 TARGET: Colour = (222, 140, 184)
 DANGER: Colour = (240, 110, 40)
 ROBOT: Colour = (250, 250, 252)

@@ -115,7 +115,8 @@ class Sensed:
         corridors: What the front half of the disc sweeps along each line (m), shape (N, 2) each.
         radius: Radius of the disc that the lengths are meant for (m).
         heading: The heading decided (rad).
-        target: The planner's temporary target (m); None without one, or beyond the walls.
+        target: The planner's temporary goal (m); None without one, or beyond the walls.
+        aim: What the middle line points at (m); None if it is not known, or beyond the walls.
     """
 
     origin: tuple[float, float]
@@ -124,6 +125,7 @@ class Sensed:
     radius: float
     heading: float
     target: tuple[float, float] | None
+    aim: tuple[float, float] | None = None
 
 
 def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
@@ -134,11 +136,7 @@ def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
     x, y = trajectory.ticks.position[int(decisions.tick[decision])].tolist()
     headings, lengths = decisions.lines[decision].tolist(), decisions.lengths[decision].tolist()
     known = all(map(math.isfinite, (*headings, *lengths)))
-    target_x, target_y = decisions.target[decision].tolist()
-    arena, radius = trajectory.scenario.arena, trajectory.scenario.robot.radius
-    aimed = math.isfinite(target_x + target_y)
-    inside = 0.0 <= target_x <= arena.size[0] and 0.0 <= target_y <= arena.size[1]
-    aimed = aimed and (inside or not arena.walls)
+    radius = trajectory.scenario.robot.radius
     lines = tuple(zip(headings, lengths, strict=True)) if known else ()
     return Sensed(
         origin=(x, y),
@@ -146,8 +144,16 @@ def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
         corridors=tuple(corridor((x, y), *line, radius) for line in lines),
         radius=radius,
         heading=float(decisions.heading[decision]),
-        target=(target_x, target_y) if aimed else None,
+        target=_marked(trajectory, decisions.target[decision].tolist()),
+        aim=_marked(trajectory, decisions.aim[decision].tolist()),
     )
+
+
+def _marked(trajectory: Trajectory, point: list[float]) -> tuple[float, float] | None:
+    """Return a point (m) that can be marked; None if it is blank, or lies beyond the walls."""
+    arena, (x, y) = trajectory.scenario.arena, point
+    inside = 0.0 <= x <= arena.size[0] and 0.0 <= y <= arena.size[1]
+    return (x, y) if math.isfinite(x + y) and (inside or not arena.walls) else None
 
 
 def sensor_range(trajectory: Trajectory) -> float:

@@ -22,9 +22,10 @@ from fuzzyq_bullet.video.decision_hold import HOLD, DecisionHold
 from fuzzyq_bullet.video.explanation import (
     ALIKE,
     STRAIGHT,
+    aim_name,
     is_asked,
     is_clear,
-    off_goal_line,
+    off_aim,
     reason,
     side_of,
     struck,
@@ -54,6 +55,7 @@ def told(facing: float = 0.0, *, heading: float = 0.0, mode: int = 0, **columns:
         "distance": 5.0,
         "difference": 0.0,
         "turn": heading / record.scenario.planner.turn_unit,  # type: ignore[attr-defined]
+        "aim": record.scenario.goal.position,
         **columns,
     }
     changed = {name: np.array([value]) for name, value in values.items()}
@@ -68,34 +70,54 @@ def said(facing: float = 0.0, **columns: Any) -> str:
 
 def test_a_clear_way() -> None:
     assert said() == "Way is clear: straight to the goal"
-    assert said(0.5) == "Way is clear: turns right, to the goal"
-    assert said(-0.5) == "Way is clear: turns left, to the goal"
+    # What counts is where the aim lies, wherever the robot still faces.
+    assert said(0.5) == "Way is clear: straight to the goal"
+    assert said(lengths=(1.0, 0.6, 1.0), distance=3.0).startswith("Sides alike")
 
 
-def test_the_freer_side_and_both_distances() -> None:
+WAY_OUT: dict[str, Any] = {"mode": 2, "aim": (2.0, 5.0), "target": (2.5, 6.0), "reach": 1.0}
+
+
+@pytest.mark.parametrize(("more", "name"), [({}, "the goal"), (WAY_OUT, "the way out")])
+def test_the_freer_side_and_both_distances(more: dict[str, Any], name: str) -> None:
     blocked: dict[str, Any] = {"lengths": (0.9, 0.3, 0.4), "distance": 1.5, "difference": 2.5}
-    assert said(heading=0.6, **blocked) == "Left is freer (0.9 m against 0.4 m): turns left"
-    assert said(0.6, heading=0.6, **blocked).endswith(": keeps left")
-    assert said(1.2, heading=0.6, **blocked).endswith(": keeps left, a little less")
+    assert said(heading=0.6, **blocked, **more) == (
+        f"Left is freer (0.9 m against 0.4 m): heads left of {name}"
+    )
     mirrored: dict[str, Any] = {"lengths": (0.4, 0.3, 0.9), "distance": 1.5, "difference": -2.5}
-    assert said(heading=-0.6, **mirrored) == "Right is freer (0.9 m against 0.4 m): turns right"
+    assert said(heading=-0.6, **mirrored, **more) == (
+        f"Right is freer (0.9 m against 0.4 m): heads right of {name}"
+    )
+    small = said(heading=-0.05, **mirrored, **more)
+    assert small.endswith(f"0.3 m towards {name}: nearly straight")
 
 
 def test_the_freer_side_is_the_one_that_measures_more_whatever_the_turn() -> None:
     blocked: dict[str, Any] = {"lengths": (0.4, 0.3, 1.0), "distance": 1.5, "difference": -3.0}
-    assert said(heading=0.6, **blocked).startswith("Right is freer (1.0 m against 0.4 m), yet")
-    small = said(heading=-0.05, **blocked)
-    assert small.endswith("0.3 m ahead: nearly straight to the goal")
-
-
-def test_a_turn_that_the_guard_holds_back_is_not_called_the_controllers() -> None:
-    assert said(0.8, heading=0.8, turn=0.0) == (
-        "Way is clear, but no room yet to turn so far: brakes first"
+    assert said(heading=0.6, **blocked) == (
+        "Right is freer (1.0 m against 0.4 m), yet the rules lead left of the goal"
     )
-    blocked: dict[str, Any] = {"lengths": (0.4, 0.3, 1.0), "distance": 1.5, "difference": -3.0}
-    assert "no room yet" in said(heading=0.6, turn=-1.0, **blocked)
-    leaving = said(heading=0.0, turn=-1.0, **blocked)
-    assert leaving == "Line to the goal leads on (0.3 m): straight to the goal"
+
+
+def moving(speed: float, facing: float = 0.0, **columns: Any) -> str:
+    """Return the sentence for one decision of a robot that moves."""
+    run = told(facing, **columns)
+    ticks = replace(run.ticks, speed=np.full_like(run.ticks.speed, speed))
+    return reason(replace(run, ticks=ticks), 0)
+
+
+@pytest.mark.parametrize("more", [{}, WAY_OUT])
+def test_a_turn_that_the_filter_holds_back_is_not_called_the_controllers(
+    more: dict[str, Any],
+) -> None:
+    blocked: dict[str, Any] = {"lengths": (0.4, 0.3, 0.9), "distance": 1.5, "difference": -2.5}
+    held = {"heading": 0.6, "turn": -1.0, **blocked, **more}
+    assert moving(0.6, **held) == "No room yet to turn so far: brakes first"
+    assert moving(0.0, **held) == "No room for a wide turn: turns on the spot"
+    stopped = {"heading": -0.6, **blocked, **more, "reach": 0.0}
+    assert moving(0.6, **stopped) == "No room yet to turn so far: brakes first"
+    assert moving(0.0, **stopped) == "No room for a wide turn: turns on the spot"
+    assert moving(0.6, **{**stopped, "reach": 0.1}).startswith("Right is freer")
 
 
 def test_sides_that_round_to_the_same_are_told_more_exactly() -> None:
@@ -105,45 +127,39 @@ def test_sides_that_round_to_the_same_are_told_more_exactly() -> None:
 
 def test_equal_sides() -> None:
     sentence = said(lengths=(0.4, 0.3, 0.4), distance=1.5)
-    assert sentence == "Both sides alike (0.4 m), 0.3 m ahead: straight to the goal"
+    assert sentence == "Sides alike (0.4 m), 0.3 m towards the goal: straight on"
 
 
-def test_other_modes_are_named() -> None:
+def test_nothing_in_sight() -> None:
+    assert said(**WAY_OUT) == "Nothing in sight: straight to the way out"
+
+
+def test_a_breakout_is_named() -> None:
     near: dict[str, Any] = {"lengths": (0.9, 0.1, 0.2), "distance": 0.5, "difference": 3.5}
-    assert said(heading=1.0, mode=1, **near) == "Blocked ahead: breaks out to the left"
-    assert said(heading=-1.0, mode=1).startswith("Comes no nearer: breaks out to the right")
+    assert said(heading=1.0, **near, **{**WAY_OUT, "mode": 1}) == (
+        "Blocked towards the goal: breaks out"
+    )
 
 
-def goes(facing: float = 0.0, *, speed: float = 0.0, **columns: Any) -> str:
-    """Return the sentence of a robot on its way to an exit."""
-    run = told(facing, **{"mode": 2, "target": (2.0, 5.0), "step": 0.3, "reach": 1.0, **columns})
-    ticks = replace(run.ticks, speed=np.full_like(run.ticks.speed, speed))
-    return reason(replace(run, ticks=ticks), 0)
+def test_a_gap_that_is_aimed_at_exactly() -> None:
+    narrow: dict[str, Any] = {"lengths": (0.1, 0.8, 0.2), "distance": 4.0, "difference": -0.5}
+    exact: dict[str, Any] = {"exact": 1.0, "heading": 0.0, "turn": -1.0, **narrow}
+    assert said(**exact, **WAY_OUT) == "Aims at a gap on the way out: the rules are not asked"
+    assert said(**exact) == "Line to the goal leads on (0.8 m): straight to the goal"
 
 
-def test_on_the_way_to_an_exit_the_side_of_the_goal_line_is_told() -> None:
-    for heading in (0.1, 1.0, math.radians(109)):
-        assert goes(heading=heading) == "Goes round the obstacle by the left"
-        assert goes(heading=-heading) == "Goes round the obstacle by the right"
-    for heading in (math.radians(111), math.pi, -math.radians(111)):
-        assert goes(heading=heading) == "Goes back to a way not tried yet"
-    assert goes(heading=math.radians(4)) == "Goes on to where the way may lead on"
-    # The side is that of the line to the goal, wherever the robot faces and the exit lies.
-    assert goes(2.0, heading=1.0, target=(2.0, -5.0)).endswith("by the left")
-
-
-def test_a_robot_that_cannot_turn_on_its_way_says_so() -> None:
-    assert goes(1.0, heading=-1.0, reach=0.0) == "Turns on the spot: no room for a wide turn"
-    assert goes(1.0, heading=0.9, reach=0.0, speed=0.6) == "Brakes first: no room for a wide turn"
-    assert goes(1.0, heading=1.0, reach=0.0).startswith("Goes round")
-    assert goes(1.0, heading=-1.0, reach=0.1).startswith("Goes round")
+def test_what_a_way_out_of_version_0_1_0_said_is_seen_from_the_goal() -> None:
+    old: dict[str, Any] = {**WAY_OUT, "aim": (math.nan, math.nan), "exact": math.nan, "turn": 1.0}
+    assert said(heading=1.0, **old) == "On a way out: heads left of the goal"
+    assert said(heading=3.0, **old) == "On a way out: heads away from the goal"
 
 
 @pytest.mark.parametrize("mode", [1, 2])
 def test_a_robot_without_a_way_on_says_so_and_one_that_only_waits_does_not(mode: int) -> None:
-    stopped: dict[str, Any] = {"mode": mode, "step": 0.0, "reach": 0.0}
-    assert goes(**stopped, target=(math.nan, math.nan)) == "Finds no way on: stops"
-    assert "stops" not in goes(1.0, **stopped)
+    stopped: dict[str, Any] = {**WAY_OUT, "mode": mode, "step": 0.0, "reach": 0.0}
+    nowhere: dict[str, Any] = {**stopped, "target": (math.nan, math.nan)}
+    assert said(**nowhere) == "Finds no way on: stops"
+    assert "stops" not in said(1.0, **stopped)
 
 
 def test_both_modes_of_a_run_in_a_trap_are_told_truly(trapped: Trajectory) -> None:
@@ -151,21 +167,18 @@ def test_both_modes_of_a_run_in_a_trap_are_told_truly(trapped: Trajectory) -> No
     names = [MODES[k] for k in facts.mode.tolist()]
     assert names.count("following") > 10
     for k, mode in enumerate(names):
-        sentence, lean = reason(trapped, k), off_goal_line(facts, k)
+        sentence, lean = reason(trapped, k), off_aim(trapped, k)
         assert ("breaks out" in sentence) == (mode == "breakout")
-        assert is_asked(facts, k) == (mode == "routine")
-        if found := re.search(r"by the (left|right)", sentence):
-            assert mode == "following"
-            assert STRAIGHT <= lean * (1 if found[1] == "left" else -1) <= math.radians(110)
+        assert is_asked(facts, k) == (facts.exact[k] == 0.0)
+        if found := re.search(r"heads (left|right) of (the .*)", sentence):
+            assert lean * (1 if found[1] == "left" else -1) >= STRAIGHT
             assert side_of(trapped, k) == (1 if found[1] == "left" else -1)
-        if "Goes back" in sentence:
-            assert mode == "following"
-            assert abs(lean) > math.radians(110)
-            assert side_of(trapped, k) == 0
-        if "Brakes" in sentence or "Turns on the spot" in sentence:
-            assert facts.reach[k] == 0.0
-    said_of = {reason(trapped, k) for k, mode in enumerate(names) if mode == "following"}
-    assert {"Goes back to a way not tried yet"} < said_of
+            assert found[2] == ("the goal" if mode == "routine" else "the way out")
+        if "not asked" in sentence:
+            assert facts.exact[k] == 1.0
+            assert abs(lean) < STRAIGHT
+    spoken = {reason(trapped, k) for k, mode in enumerate(names) if mode == "following"}
+    assert any("freer" in one and "way out" in one for one in spoken)
 
 
 def test_a_planner_that_explains_nothing() -> None:
@@ -173,19 +186,35 @@ def test_a_planner_that_explains_nothing() -> None:
         "lengths": (math.nan,) * 3,
         "lines": (math.nan,) * 3,
         "difference": math.nan,
+        "aim": (math.nan, math.nan),
     }
-    assert said(**blank) == "Drives straight on"
-    assert said(heading=1.0, **blank) == "Turns left"
+    run = told(**blank)
+    (x, y), goal = run.ticks.position[0].tolist(), run.scenario.goal.position
+    bearing = math.atan2(goal[1] - y, goal[0] - x)
+    assert said(heading=bearing, **blank) == "Straight to the goal"
+    assert said(heading=bearing + 1.0, **blank) == "Heads left of the goal"
+    assert said(heading=bearing - 1.0, **blank) == "Heads right of the goal"
+
+
+def test_the_last_frame_says_how_the_run_ended_and_not_what_was_decided_last() -> None:
+    for outcome, words in (
+        ("goal", "In the goal"),
+        ("timeout", "Time is up before the goal"),
+        ("stuck", "Finds no way on: stops"),
+    ):
+        run = drive(seconds=1.0, outcome=outcome)  # type: ignore[arg-type]
+        assert Story(run).sentence(3, over=True) == words
+        assert Story(run).sentence(3) == reason(run, 3)
 
 
 @pytest.fixture(scope="module")
 def real() -> Trajectory:
-    return episode.run(load_scenario("boxes"))
+    return episode.run(load_scenario("figure-12a"))
 
 
 @pytest.fixture(scope="module")
 def trapped() -> Trajectory:
-    return episode.run(load_scenario("u-shape"))
+    return episode.run(load_scenario("figure-10b"))
 
 
 @pytest.mark.parametrize("speed", [1.0, 4.0])
@@ -215,9 +244,9 @@ def test_in_every_frame_the_sentence_is_true_of_what_the_panels_show(
             assert len(drawn) == 5
             [decision] = set(drawn.values())
             sentence = story.sentence(decision, over=moment.over)
-            if real.collision is None or not moment.over:
+            if not moment.over:
                 assert sentence == reason(real, decision)
-            _agrees(real, decision, sentence)
+                _agrees(real, decision, sentence)
             # Never older than the hold allows.
             assert decision <= moment.decision
             if decision < moment.decision:
@@ -228,28 +257,28 @@ def test_in_every_frame_the_sentence_is_true_of_what_the_panels_show(
 def _agrees(run: Trajectory, decision: int, sentence: str) -> None:
     """Check a sentence against the numbers that the panels show for a decision."""
     facts = run.decisions
-    left, ahead, right = facts.lengths[decision].tolist()
-    lean = off_goal_line(facts, decision)
+    left, middle, right = facts.lengths[decision].tolist()
+    lean = off_aim(run, decision)
     side = re.search(r"(Left|Right) is freer \((.+) m against (.+) m\)", sentence)
     if side:
         more, less = (left, right) if side[1] == "Left" else (right, left)
         assert float(side[2]) == pytest.approx(more, abs=0.051)
         assert float(side[3]) == pytest.approx(less, abs=0.051)
         assert more - less >= ALIKE
-    kept = re.search(r": (?:turns|keeps) (left|right)(?!, )", sentence)
-    if side and kept:
+    if kept := re.search(r"(?:heads|lead) (left|right) of (the .*)", sentence):
         assert (lean > 0.0) == (kept[1] == "left")
-    for number in re.findall(r"([\d.]+) m ahead", sentence):
-        assert float(number) == pytest.approx(ahead, abs=0.051)
-    if "straight to the goal" in sentence:
+        assert kept[2] == aim_name(run, decision)
+    for number in re.findall(r"([\d.]+) m towards", sentence):
+        assert float(number) == pytest.approx(middle, abs=0.051)
+    if "straight to" in sentence:
         assert abs(lean) < STRAIGHT
     if MODES[int(facts.mode[decision])] == "routine":
         assert ("Way is clear" in sentence) <= is_clear(facts, decision)
     if is_clear(facts, decision):
         assert not side
         assert (
-            ahead > 4.9 * STEP_UNIT
-            or ahead
+            middle > 4.9 * STEP_UNIT
+            or middle
             >= math.dist(run.ticks.position[facts.tick[decision]], run.scenario.goal.position)
             - 1e-9
         )
@@ -264,7 +293,7 @@ def test_a_decision_stays_long_enough_to_be_read() -> None:
     for before, after in pairwise(changes.tolist()):
         if after - before < HOLD * 30 - 1:
             old, new = seen[after - 1], seen[after]
-            turned = off_goal_line(run.decisions, old) * off_goal_line(run.decisions, new) < 0
+            turned = off_aim(run, old) * off_aim(run, new) < 0
             assert turned or is_clear(run.decisions, old)
 
 

@@ -63,6 +63,7 @@ def test_the_scene_shows_robot_lines_and_goal(middle: Image.Image) -> None:
 
 
 def test_the_map_shows_path_goal_and_three_lines_at_their_length(run: Trajectory) -> None:
+    run = aiming(run, (math.nan, math.nan))  # the mark of the aim has the colour of a line
     area = pixels(frame(run, 7.0), MAP)
     scale = 34.4  # pixels a metre: 10 m on 344 pixels
     assert count(area, style.GOAL, 30) > 30
@@ -72,6 +73,30 @@ def test_the_map_shows_path_goal_and_three_lines_at_their_length(run: Trajectory
     for colour, (_, length) in zip(style.LINES, sensed.lines, strict=True):
         # A line 3.6 pixels wide, about two of which are of its pure colour.
         assert count(area, colour, 40) == pytest.approx(length * scale * 3, rel=0.45)
+
+
+def aiming(run: Trajectory, at: tuple[float, float]) -> Trajectory:
+    """Return the record with another aim (m)."""
+    aim = np.tile(at, (len(run.decisions.tick), 1))
+    return replace(run, decisions=replace(run.decisions, aim=aim))
+
+
+def test_the_aim_is_marked_where_it_is_in_scene_and_map(run: Trajectory) -> None:
+    """The mark has four strokes in the colour of the middle line, and is open in the middle."""
+    place = (7.5, 2.0)
+    shown, plain = (frame(aiming(run, at), 5.5) for at in (place, (math.nan, math.nan)))
+    scene = Scene(run)
+    seen = scene.lens.project(np.array([(*place, 0.0)]))[0]
+    scene.close()
+    for rect, at in ((MAP, Map(run).spot([place])[0]), (SCENE, seen)):
+        before, after = (pixels(one, rect)[:-20] for one in (plain, shown))  # without the legend
+        changed = np.argwhere(np.abs(after - before).max(axis=-1) > 8)
+        assert len(changed) > 60
+        assert changed.mean(axis=0)[::-1] == pytest.approx(at - 0.5, abs=0.6)
+        assert np.ptp(changed, axis=0).max() <= 34, "nothing else may change"
+        assert 80 < count(after, style.AIM, 40) - count(before, style.AIM, 40) < 250
+        x, y = at.astype(int).tolist()
+        assert (after[y - 1 : y + 2, x - 1 : x + 2] == before[y - 1 : y + 2, x - 1 : x + 2]).all()
 
 
 def test_the_rule_that_fires_most_is_the_brightest(run: Trajectory) -> None:
@@ -430,13 +455,18 @@ def test_marks_and_outline_drawn_step_by_step_are_those_of_one_frame(freed: Traj
         assert differs.sum() <= 30, (until, differs.sum())
 
 
-def test_rules_that_are_not_asked_are_grey(freed: Trajectory) -> None:
-    def table(*times: float) -> np.ndarray[Any, Any]:
+def test_rules_are_lit_whenever_they_are_asked_and_grey_when_they_are_not(
+    freed: Trajectory,
+) -> None:
+    facts = freed.decisions
+    gaps = replace(freed, decisions=replace(facts, exact=np.where(facts.mode == 2, 1.0, 0.0)))
+
+    def table(*times: float, run: Trajectory = gaps) -> np.ndarray[Any, Any]:
         canvas = Canvas(RULES, "3  RULES THAT FIRE")
-        panel = Rules(freed, canvas)
+        panel = Rules(run, canvas)
         image = Image.new("RGB", (style.WIDTH, style.HEIGHT), style.PAGE)
         for time in times:
-            moment = Timeline(freed).at(time)
+            moment = Timeline(run).at(time)
             panel.draw(replace(moment, shown=moment.decision))
             for region in canvas.take_changes():
                 image.paste(region.image, (region.x, region.y))
@@ -448,6 +478,8 @@ def test_rules_that_are_not_asked_are_grey(freed: Trajectory) -> None:
     asked, greyed = table(1.0), table(3.0)
     assert colourful(asked) > 500
     assert colourful(greyed) == 0
+    # A way out is no reason: where its aim leaves the rules a say, they are lit.
+    assert colourful(table(3.0, run=freed)) > 500
     assert (asked[:28] != greyed[:28]).any(), "the title must say so"
     # Step by step too: all of it turns grey, and lights up again.
     assert (table(1.0, 3.0) == greyed).all()

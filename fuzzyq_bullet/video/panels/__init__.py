@@ -1,6 +1,6 @@
 """The panels below the scene, each a card that explains one step of a decision."""
 
-from fuzzyq_bullet.video.panels import action, fuzzification, rules, sensors
+from fuzzyq_bullet.video.panels import action, curves, fuzzification, rules, sensors
 from fuzzyq_bullet.video.panels.base import Canvas, Panel, Panels, frame_size, register_panel
 
 __all__ = [
@@ -8,6 +8,7 @@ __all__ = [
     "Panel",
     "Panels",
     "action",
+    "curves",
     "frame_size",
     "fuzzification",
     "register_panel",

@@ -1,4 +1,4 @@
-"""Panel 4: what the robot does: turn and step decided, speed, way to the goal, room around."""
+"""Panel 4: what the robot does: heading and step decided, speed, room around, weights in force."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.explanation import off_goal_line
+from fuzzyq_bullet.video.explanation import aim_name, off_aim
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.style import ACTION
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
@@ -23,6 +23,10 @@ _FACTS = 226
 _ROW = 44
 _DECIDED: paint.Box = (6, 26, _FACTS - 4, ACTION.height - 6)
 _BAR: paint.Box = (60, 187, 126, 198)
+_WEIGHTS = ("ω1", "ω2", "c_f")
+_SIZES = (24, 22, 20, 18, 16)
+_WEIGHT_AT = (0, 40, 102)
+"""Where the columns of the weights begin (pixels)."""
 _WIDEST = math.radians(100.0)
 """A turn beyond this leaves the dial's needle at its end."""
 
@@ -33,8 +37,9 @@ class Action:
 
     def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
         self._canvas = canvas
+        self._trajectory = trajectory
         self._decisions = trajectory.decisions
-        self._positions = trajectory.ticks.position
+        self._weighted = bool(np.isfinite(trajectory.decisions.weights).any())
         self._goal = trajectory.scenario.goal.position
         steps = trajectory.decisions.step
         known = steps[np.isfinite(steps)]
@@ -42,53 +47,64 @@ class Action:
         card = canvas.image
         card.paste(style.LINE, mask=paint.mask((0, 0, *ACTION.size), _dial_face))
         paint.write(card, (14, 199), "step", style.MUTED, 17)
-        for row, name in enumerate(("speed", "to the goal", "nearest thing", "weights ω")):
+        names = ("speed", "to the goal", "nearest thing", "" if self._weighted else "known free")
+        for row, name in enumerate(names):
             paint.write(card, (_FACTS, 40 + _ROW * row), name, style.MUTED, 16)
+        if self._weighted:
+            for x, name in zip(_WEIGHT_AT, _WEIGHTS, strict=True):
+                paint.write(card, (_FACTS + x, 40 + _ROW * 3), name, style.MUTED, 16)
         self._undecided = card.crop(_DECIDED)
         self._shown: list[object] = [None] * 5
 
     def draw(self, moment: Moment) -> None:
         """Draw what is, and what the decision shown wants."""
         index = moment.shown
-        weights = (math.nan, math.nan)
         turn = step = math.nan
+        name = ""
         if index != NO_DECISION:
-            first, second = self._decisions.weights[index].tolist()
-            weights, step = (first, second), float(self._decisions.step[index])
-            turn = round(self._turn(index), 2)
+            step = float(self._decisions.step[index])
+            turn = math.radians(round(math.degrees(off_aim(self._trajectory, index))))
+            name = aim_name(self._trajectory, index)
         away = math.dist(moment.position, self._goal)
         facts = (
             f"{abs(moment.speed):.2f} m/s",
             f"{away:.2f} m" if away < 100 else f"{away:.0f} m",
             f"{moment.clearance:.2f} m" if math.isfinite(moment.clearance) else "far away",
-            "–" if math.isnan(sum(weights)) else f"{weights[0]:.2f} · {weights[1]:.2f}",
+            self._last_row(index),
         )
-        decided = (turn, step) if math.isfinite(turn) else None
+        if moment.over and self._trajectory.outcome == "goal":
+            name = ""
+        decided = (turn, step, name) if math.isfinite(turn) else None
         before, self._shown = self._shown, [*facts, decided]
         for row, (fact, old) in enumerate(zip(facts, before, strict=False)):
             if fact != old:
                 self._draw_fact(row, fact)
         if decided is not None and decided != before[-1]:
             image = self._undecided.copy()
-            _draw_turn(image, _DECIDED, turn)
+            _draw_turn(image, _DECIDED, turn, name)
             self._draw_step(image, _DECIDED, step)
             self._canvas.paste(image, _DECIDED[:2])
 
-    def _draw_fact(self, row: int, fact: str) -> None:
+    def _last_row(self, index: int) -> str | tuple[str, ...]:
+        """Return the weights in force and c_f; without weights, how far the way is known free."""
+        if not self._weighted:
+            reach = math.nan if index == NO_DECISION else float(self._decisions.reach[index])
+            return f"{reach:.2f} m" if math.isfinite(reach) else "not checked"
+        if index == NO_DECISION:
+            return ("–",) * 3
+        d = self._decisions
+        numbers = (*d.weights[index].tolist(), float(d.breakout_at[index]))
+        return tuple(f"{one:.3g}" if math.isfinite(one) else "–" for one in numbers)
+
+    def _draw_fact(self, row: int, fact: str | tuple[str, ...]) -> None:
         top = 46 + _ROW * row
         image = Image.new("RGB", (ACTION.width - _FACTS - 4, 22), style.CARD)
-        text, size = style.fitting(fact, image.width, (24, 22, 20), bold=True)
-        paint.write(image, (0, 64 + _ROW * row - top), text, style.TEXT, size, bold=True)
+        parts = [(0, image.width, fact)] if isinstance(fact, str) else _columns(fact, image.width)
+        size = min(style.fitting(one, width, _SIZES, bold=True)[1] for _, width, one in parts)
+        for x, width, part in parts:
+            text, _ = style.fitting(part, width, (size,), bold=True)
+            paint.write(image, (x, 64 + _ROW * row - top), text, style.TEXT, size, bold=True)
         self._canvas.paste(image, (_FACTS, top))
-
-    def _turn(self, index: int) -> float:
-        """Return the decided turn (rad) away from the middle line, else from the goal."""
-        lean = off_goal_line(self._decisions, index)
-        if math.isfinite(lean):
-            return lean
-        (x, y), (goal_x, goal_y) = self._positions[int(self._decisions.tick[index])], self._goal
-        bearing = math.atan2(goal_y - y, goal_x - x)
-        return math.remainder(float(self._decisions.heading[index]) - bearing, math.tau)
 
     def _draw_step(self, image: Image.Image, box: paint.Box, step: float) -> None:
         left, top, right, bottom = _BAR
@@ -102,9 +118,20 @@ class Action:
         paint.write(image, at, f"{step:.2f} m", style.TEXT, 19, bold=True)
 
 
-def _draw_turn(image: Image.Image, box: paint.Box, turn: float) -> None:
+def _columns(facts: tuple[str, ...], width: int) -> list[tuple[int, int, str]]:
+    """Return where each of the weights begins (pixels), how wide it may be, and what it says."""
+    rights = (*(x - 4 for x in _WEIGHT_AT[1:]), width)
+    return [(x, right - x, fact) for x, right, fact in zip(_WEIGHT_AT, rights, facts, strict=True)]
+
+
+def _draw_turn(image: Image.Image, box: paint.Box, turn: float, name: str) -> None:
+    """Draw the needle; without the name of an aim the robot has arrived, and there is none."""
     shown = min(max(turn, -_WIDEST), _WIDEST)
     x, y = _DIAL
+    if not name:
+        at = (x - box[0], 157 - box[1])
+        paint.write(image, at, "in the goal", style.TEXT, 24, bold=True, align="m")
+        return
     around = [(x - _RADIUS, y - _RADIUS), (x + _RADIUS, y + 12)]
 
     def sweep(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
@@ -125,7 +152,7 @@ def _draw_turn(image: Image.Image, box: paint.Box, turn: float) -> None:
     text = "straight" if degrees < 1 else f"{degrees}° {'left' if turn > 0 else 'right'}"
     paint.write(image, (x - box[0], 157 - box[1]), text, style.TEXT, 24, bold=True, align="m")
     below = (x - box[0], 176 - box[1])
-    paint.write(image, below, "of the line to the goal", style.MUTED, 15, align="m")
+    paint.write(image, below, f"{'to' if degrees < 1 else 'of'} {name}", style.MUTED, 16, align="m")
 
 
 def _dial_face(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:

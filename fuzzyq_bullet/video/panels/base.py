@@ -43,6 +43,13 @@ class Canvas:
         self._blank = self.image.copy()
         self._changed: list[paint.Box] = [(0, 0, *rect.size)]
 
+    def rename(self, title: str) -> None:
+        """Write another title in place of the one that was given; the rest is left as it is."""
+        strip = Image.new("RGB", (self.width - 20, 22), style.CARD)
+        paint.write(strip, (2, 16), title, style.MUTED, 16, bold=True)
+        self._blank.paste(strip, (10, 4))
+        self.paste(strip, (10, 4))
+
     def blank(self, box: paint.Box | None = None) -> Image.Image:
         """Return a part of the empty card, or all of it, to be drawn on and pasted."""
         return self._blank.crop(box or (0, 0, self.width, self.height))

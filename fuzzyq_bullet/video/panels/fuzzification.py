@@ -10,8 +10,8 @@ from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.fuzzy.paper import RULES
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.explanation import is_clear
-from fuzzyq_bullet.video.panels.base import Canvas, register_panel
+from fuzzyq_bullet.video.explanation import aim_name, is_clear
+from fuzzyq_bullet.video.panels.base import Canvas
 from fuzzyq_bullet.video.style import FUZZIFICATION
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
@@ -37,7 +37,6 @@ class Sets:
 
     Args:
         variable: Whose sets.
-        name: What it is called in plain words.
         words: What each set is called in plain words.
         top: Upper edge in the card (pixels).
         mirrored: Whether greater values are drawn further left: where Df is greater, more room is
@@ -45,10 +44,9 @@ class Sets:
     """
 
     def __init__(
-        self, variable: Variable, name: str, words: tuple[str, ...], top: int, *, mirrored: bool
+        self, variable: Variable, words: tuple[str, ...], top: int, *, mirrored: bool
     ) -> None:
         self._variable = variable
-        self._name = name
         self._words = words
         self._box = (_LEFT, top + 22, _LEFT + _WIDTH, top + 22 + _PLOT_HEIGHT)
         self._top = top
@@ -69,7 +67,6 @@ class Sets:
         self.top = top
         self._shown: tuple[object, ...] | None = None
         blank = Image.new("RGB", (FUZZIFICATION.width, 88), style.CARD)
-        paint.write(blank, (_LEFT, 16), name, style.MUTED, 17)
         for curve_mask in self._curves:
             blank.paste(style.FAINT, self._inside(*self._box[:2]), curve_mask)
         base = self._box[3] - top
@@ -90,10 +87,13 @@ class Sets:
             self._box[3] - 1 - membership * (self._box[3] - self._box[1] - 4),
         )
 
-    def draw(self, value: float, memberships: Floats, said: str = "") -> Image.Image | None:
+    def draw(
+        self, name: str, value: float, memberships: Floats, said: str = ""
+    ) -> Image.Image | None:
         """Return the plot with value and memberships marked, None if it looks as last time.
 
         Args:
+            name: What the variable is called in plain words.
             value: The value.
             memberships: What it belongs to, and how much.
             said: What to call it instead of what it belongs to most.
@@ -106,11 +106,12 @@ class Sets:
         x = round(self._at(value, 0.0)[0]) if known else None
         strongest = int(np.argmax(memberships)) if known else -1
         text = (said or self._words[strongest]) if known else "–"
-        if (x, text, *levels) == self._shown:
+        if (name, x, text, *levels) == self._shown:
             return None
-        self._shown = (x, text, *levels)
+        self._shown = (name, x, text, *levels)
 
         image = self._blank.copy()
+        paint.write(image, (_LEFT, 16), name, style.MUTED, 17)
         origin = self._inside(*self._box[:2])
         for area, curve, level in zip(self._areas, self._curves, levels, strict=True):
             if level:
@@ -138,16 +139,15 @@ class Sets:
             paint.write(image, (x, y), one.label, colour, 15, bold=bold, align="m")
 
 
-@register_panel("fuzzification", title="2  JUDGES", place=FUZZIFICATION)
 class Fuzzification:
     """Panel 2 of one run."""
 
     def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
         self._canvas = canvas
-        self._decisions = trajectory.decisions
+        self._trajectory, self._decisions = trajectory, trajectory.decisions
         base = rule_base(trajectory)
-        self._near = Sets(base.row, "room ahead:", NEAR_WORDS, 28, mirrored=False)
-        self._side = Sets(base.column, "sides:", SIDE_WORDS, 120, mirrored=True)
+        self._near = Sets(base.row, NEAR_WORDS, 28, mirrored=False)
+        self._side = Sets(base.column, SIDE_WORDS, 120, mirrored=True)
         self._decision: int | None = None
 
     def draw(self, moment: Moment) -> None:
@@ -158,12 +158,16 @@ class Fuzzification:
         self._decision = decision
         d, blank = self._decisions, np.full(5, np.nan)
         if decision == NO_DECISION:
-            near, side = self._near.draw(math.nan, blank), self._side.draw(math.nan, blank)
+            near = self._near.draw("to the goal:", math.nan, blank)
+            side = self._side.draw("sides:", math.nan, blank)
         else:
             # With a clear way to the goal the planner does not look aside: Df is simply 0.
             said = ("way is clear", "not asked") if is_clear(d, decision) else ("", "")
-            near = self._near.draw(float(d.distance[decision]), d.near[decision], said[0])
-            side = self._side.draw(float(d.difference[decision]), d.side[decision], said[1])
+            name, df = aim_name(self._trajectory, decision), float(d.difference[decision])
+            near = self._near.draw(
+                f"to {name}:", float(d.distance[decision]), d.near[decision], said[0]
+            )
+            side = self._side.draw("sides:", df, d.side[decision], said[1])
         for plot, image in ((self._near, near), (self._side, side)):
             if image is not None:
                 self._canvas.paste(image, (0, plot.top))

@@ -1,6 +1,6 @@
 """Panel 3: the rule table, each rule an arrow of its turn and step, lit as strongly as it fires.
 
-Where a way out decides in place of the controller the table is grey.
+Where the robot aims at a gap exactly the rules are not asked, and the table is grey.
 """
 
 from __future__ import annotations
@@ -13,9 +13,8 @@ from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import is_asked
-from fuzzyq_bullet.video.panels.base import Canvas, register_panel
+from fuzzyq_bullet.video.panels.base import Canvas
 from fuzzyq_bullet.video.panels.fuzzification import NEAR_WORDS, rule_base
-from fuzzyq_bullet.video.style import RULES
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
@@ -30,11 +29,9 @@ _LEVELS = 32
 _UNLIT: style.Colour = (38, 45, 56)
 _GREY: style.Colour = (84, 92, 104)
 """A rule that fires fully, and is not asked."""
-_TITLES = {True: "3  RULES THAT FIRE", False: "3  RULES (NOT ASKED)"}
-_TITLE: paint.Box = (10, 4, 264, 26)
+_TITLES = {True: "3  RULES THAT FIRE", False: "3  AIMS AT A GAP"}
 
 
-@register_panel("rules", title=_TITLES[True], place=RULES)
 class Rules:
     """Panel 3 of one run.
 
@@ -77,7 +74,7 @@ class Rules:
         changed = []
         if asked != self._asked:
             self._asked = asked
-            changed.append(self._draw_title(_TITLES[asked]))
+            self._canvas.rename(_TITLES[asked])
         for row, cells in enumerate(strengths.tolist()):
             for column, strength in enumerate(cells):
                 # The root lifts weak rules into sight; the order of brightness stays.
@@ -89,11 +86,6 @@ class Rules:
         box = paint.joined(changed)
         if box is not None:
             self._canvas.changed(box)
-
-    def _draw_title(self, title: str) -> paint.Box:
-        ImageDraw.Draw(self._image).rectangle(_TITLE, style.CARD)
-        paint.write(self._image, (12, 20), title, style.MUTED, 16, bold=True)
-        return _TITLE
 
     def _draw_cell(
         self, row: int, column: int, level: int, strongest: bool, asked: bool

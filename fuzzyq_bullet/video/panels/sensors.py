@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.explanation import is_clear
+from fuzzyq_bullet.video.explanation import aim_name, is_clear
 from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for, corridor
 from fuzzyq_bullet.video.meshes import walls_of
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
@@ -26,7 +26,7 @@ _DIAMETER = _LENS[2] - _LENS[0]
 _FACTOR = 2
 _COLUMN: paint.Box = (192, 26, 314, 208)
 _ROW = 38
-_NAMES = ("left", "ahead", "right")
+_NO_LINES = ("This planner", "casts no", "detection", "lines. Arrow:", "its heading.")
 _MOST = 400
 """Obstacles drawn in the close-up at most: the nearest."""
 _LARGE = 50.0
@@ -52,8 +52,6 @@ class Sensors:
         self._extents = np.array([o.extent() for o in scenario.obstacles])
         everywhere = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * 1e4
         self._walls = walls_of(scenario, everywhere)
-        self._image = paint.card(SENSORS, "1  SENSORS")
-        self._blank = self._image.crop(_COLUMN)
         self._round = paint.mask(
             (0, 0, _DIAMETER, _DIAMETER),
             lambda pen, at: pen.ellipse((0, 0, _DIAMETER * at.factor, _DIAMETER * at.factor), 255),
@@ -113,6 +111,8 @@ class Sensors:
             tip = here + way * (self._radius + 0.32)
             pen.line(at(np.stack([here, tip])), style.TEXT, 3 * _FACTOR)
             pen.polygon(at(arrow((tip[0], tip[1]), sensed.heading, 0.2)), fill=style.TEXT)
+            if sensed.aim is not None:
+                _mark_aim(pen, np.reshape(at(np.array([sensed.aim])), 2), side / 2)
         centre, radius = side / 2, self._radius * self._scale
         pen.ellipse(
             (centre - radius, centre - radius, centre + radius, centre + radius), style.ROBOT
@@ -128,32 +128,51 @@ class Sensors:
         return self._outlines[index]
 
     def _write_numbers(self, image: Image.Image, index: int) -> None:
+        if not np.isfinite(self._decisions.lengths).any():
+            for row, words in enumerate(_NO_LINES):
+                paint.write(image, (4, 40 + 24 * row), words, style.MUTED, 16)
+            return
         lengths = (
             [math.nan] * 3 if index == NO_DECISION else self._decisions.lengths[index].tolist()
         )
         pen = ImageDraw.Draw(image)
-        for row, (name, colour, length) in enumerate(
-            zip(_NAMES, style.LINES, lengths, strict=True)
-        ):
+        towards = "the goal" if index == NO_DECISION else aim_name(self._trajectory, index)
+        names = ("left", f"to {towards}", "right")
+        for row, (name, colour, length) in enumerate(zip(names, style.LINES, lengths, strict=True)):
             top = 2 + _ROW * row
             pen.rectangle((0, top, 5, top + 33), colour)
+            label, size = style.fitting(name, image.width - 16, (16, 15, 14))
+            paint.write(image, (14, top + 12), label, style.MUTED, size)
             free = math.isfinite(length) and length >= self._range - 1e-9
-            label = f"{name}, free" if free else name
-            paint.write(image, (14, top + 12), label, style.MUTED, 16)
-            value = f"{length:.2f} m" if math.isfinite(length) else "–"
-            paint.write(image, (14, top + 33), value, style.TEXT, 22, bold=True)
+            value = f"{'> ' if free else ''}{length:.2f} m" if math.isfinite(length) else "–"
+            value, size = style.fitting(value, image.width - 16, (22, 21, 20), bold=True)
+            paint.write(image, (14, top + 33), value, style.TEXT, size, bold=True)
         top = 2 + _ROW * 3
         paint.write(image, (14, top + 12), "left − right", style.MUTED, 16)
         difference = math.nan if index == NO_DECISION else float(self._decisions.difference[index])
-        value, told = "–", "Df –"
+        value, told = "–", ""
+        if math.isfinite(lengths[0] - lengths[2]):
+            value = f"{lengths[0] - lengths[2] + 0.0:+.2f} m"
         if math.isfinite(difference):
             # A planner with a clear way to the goal does not look aside: it takes Df as 0.
             asked = not is_clear(self._decisions, index)
-            value = f"{lengths[0] - lengths[2] + 0.0:+.2f} m" if asked else "not asked"
+            value = value if asked else "not asked"
             told = f"Df {difference + 0.0:+.1f}" if asked else "Df 0"
         for down, text, size in ((34, value, 21), (57, told, 21)):
             text, size = style.fitting(text.replace("-", "−"), 108, (size, 19, 17), bold=True)
             paint.write(image, (14, top + down), text, style.TEXT, size, bold=True)
+
+
+def _mark_aim(pen: ImageDraw.ImageDraw, aim: Floats, middle: float) -> None:
+    """Mark the aim, at the rim in its direction if it lies beyond; pixels of the close-up."""
+    away = aim - middle
+    length, most = float(np.hypot(*away)), middle - 8 * _FACTOR
+    x, y = (middle + away * min(1.0, most / max(length, 1e-9))).tolist()
+    for colour, width in ((style.PAGE, 5 * _FACTOR), (style.AIM, 3 * _FACTOR)):
+        for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            near, far = 3 * _FACTOR, 7 * _FACTOR
+            ends = (x + dx * near, y + dy * near, x + dx * far, y + dy * far)
+            pen.line(ends, colour, width)
 
 
 def _fill(
