@@ -29,6 +29,8 @@ _LINE = 3.6
 """Width of a detection line (pixels)."""
 _OUTLINE = 2.4
 """Width of the line about what the robot goes round (pixels)."""
+_COVERS = 14.0
+"""Nothing is marked nearer to the robot (pixels); the scene is larger, and shows it."""
 _LEAST_ROBOT = 6.0
 """The robot is never drawn with a smaller radius (pixels)."""
 
@@ -70,7 +72,7 @@ class Map:
             [
                 self._trail.follow(moment.tick),
                 self._decorate(moment.decision),
-                self._point_at(None if sensed is None else sensed.aim),
+                self._point_at(None if sensed is None else self._apart(sensed, sensed.aim)),
             ]
         )
         centre = self.spot([moment.position])[0]
@@ -82,8 +84,8 @@ class Map:
             )
         ]
         target = None
-        if sensed is not None and sensed.target is not None:
-            target = self.spot([sensed.target])[0]
+        if sensed is not None and (to := self._apart(sensed, sensed.target)) is not None:
+            target = self.spot([to])[0]
             parts.append(paint.box_around(target, 12, MAP.size))
         if hit is not None:
             parts.append(paint.box_around(self.spot([hit]), 20, MAP.size))
@@ -123,6 +125,14 @@ class Map:
             outline = None if avoided is None else self._outline(avoided)
             changed.append(self._trail.lay_below(outline))
         return paint.joined(changed)
+
+    def _apart(
+        self, sensed: Sensed, point: tuple[float, float] | None
+    ) -> tuple[float, float] | None:
+        """Return a point (m) to be marked, unless its mark would cover the robot."""
+        if point is None or math.dist(point, sensed.origin) * self._scale < _COVERS:
+            return None
+        return point
 
     def _point_at(self, aim: tuple[float, float] | None) -> paint.Box | None:
         """Mark the aim (m)."""

@@ -35,7 +35,7 @@ def ground_seen(lens: Lens, margin: float = 1.0) -> Floats:
     return np.asarray(centre + away * (1.0 + margin / reach) * 1.02)
 
 
-def ground_of(scenario: Scenario, way: Floats, seen: Floats) -> Floats:
+def ground_of(scenario: Scenario, seen: Floats) -> Floats:
     """Return the outline (m) of the ground: the arena, or all there is to see without walls."""
     if not scenario.arena.walls:
         return seen

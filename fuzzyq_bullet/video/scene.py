@@ -14,9 +14,10 @@ from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera, photo
 from fuzzyq_bullet.video import meshes, paint, style
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
+from fuzzyq_bullet.video.shots import SPAN, Shot, Shots
 from fuzzyq_bullet.video.style import SCENE
 from fuzzyq_bullet.video.timeline import Sensed, Steady
-from fuzzyq_bullet.video.viewpoint import extent_of, lens_for, way
+from fuzzyq_bullet.video.viewpoint import extent_of, lens_for
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
@@ -36,12 +37,25 @@ class Scene:
     """The 3-D view of one run.
 
     Attributes:
-        lens: The camera, whose picture is the card ``style.SCENE``.
+        lens: The camera of the shot, whose picture is the card ``style.SCENE``.
     """
 
     def __init__(self, trajectory: Trajectory) -> None:
-        self.lens = lens_for(trajectory, SCENE.size)
-        picture, ground = _still(trajectory, self.lens)
+        self._trajectory = trajectory
+        self._shots = Shots(trajectory)
+        self._open = ExitStack()
+        self._cut_to(0)
+
+    def close(self) -> None:
+        """Free the robot's renderer."""
+        self._open.close()
+
+    def _cut_to(self, number: int) -> None:
+        """Begin a shot: another camera, the still world as it sees it, and the way so far."""
+        self._open.close()
+        trajectory, self._shot = self._trajectory, number
+        self.lens = lens_for(trajectory, self._shots[number].points, SCENE.size)
+        picture, ground = _still(trajectory, self._shots[number], self.lens)
         self._depth = picture.depth
         self._ground = ground
         still = _decorated(picture, ground, trajectory, self.lens)
@@ -58,14 +72,13 @@ class Scene:
             )
             self._open = stack.pop_all()
 
-    def close(self) -> None:
-        """Free the robot's renderer."""
-        self._open.close()
-
     def draw(
         self, moment: Moment, sensed: Sensed | None, hit: tuple[float, float] | None = None
     ) -> DirtyRegion | None:
         """Return what changed since the last moment drawn; ``hit`` marks a collision (m)."""
+        shot = self._shots.at(moment.tick)
+        if shot != self._shot:
+            self._cut_to(shot)
         if not self._steady.moved(moment) and sensed is self._sensed:
             return None
         grown = paint.joined(
@@ -175,13 +188,13 @@ class Scene:
             paint.stamp(image, box, [centre], _SMALLEST / 2 + 2, style.ROBOT, ring)
 
 
-def still_meshes(trajectory: Trajectory, lens: Lens) -> tuple[list[Mesh], bool]:
+def still_meshes(trajectory: Trajectory, shot: Shot, lens: Lens) -> tuple[list[Mesh], bool]:
     """Return the surfaces of all that never moves, and whether the first of them is ground."""
     seen = meshes.ground_seen(lens)
     scenario = trajectory.scenario
-    ground = meshes.ground_of(scenario, way(trajectory), seen)
+    ground = meshes.ground_of(scenario, seen)
     low_x, low_y, high_x, high_y = extent_of(trajectory)
-    span = max(high_x - low_x, high_y - low_y)
+    span = max(high_x - low_x, high_y - low_y) if shot.whole else SPAN
     tall = max(min(0.9, 0.25 * span), 0.05 * span)
     return meshes.solids(
         ground,
@@ -191,9 +204,9 @@ def still_meshes(trajectory: Trajectory, lens: Lens) -> tuple[list[Mesh], bool]:
     ), len(ground) >= 3
 
 
-def _still(trajectory: Trajectory, lens: Lens) -> tuple[Picture, Image.Image]:
+def _still(trajectory: Trajectory, shot: Shot, lens: Lens) -> tuple[Picture, Image.Image]:
     """Return the picture of all that never moves, and where it shows ground (mode L)."""
-    surfaces, grounded = still_meshes(trajectory, lens)
+    surfaces, grounded = still_meshes(trajectory, shot, lens)
     picture = photograph(surfaces, lens, DETAIL)
     bare = (picture.mask == 0) & grounded
     return picture, Image.fromarray(np.where(bare, 255, 0).astype(np.uint8)).reduce(DETAIL)

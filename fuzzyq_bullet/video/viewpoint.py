@@ -54,9 +54,8 @@ def extent_of(trajectory: Trajectory, margin: float = MARGIN) -> tuple[float, fl
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
-def lens_for(trajectory: Trajectory, size: tuple[int, int]) -> Lens:
-    """Return the camera that shows all of the robot's way largest, looking north if it can."""
-    points = way(trajectory)
+def lens_for(trajectory: Trajectory, points: Floats, size: tuple[int, int]) -> Lens:
+    """Return the camera that shows points (m) of the arena largest, looking north if it can."""
     span = float((points.max(axis=0) - points.min(axis=0)).max())
     margin = max(MARGIN, 0.06 * span)
     angle = np.arange(8) * (math.tau / 8)

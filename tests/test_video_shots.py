@@ -1,0 +1,80 @@
+"""A robot in a large arena is filmed from near, in several shots; in a small one all is in one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from PIL import Image
+from synthetic import drive, scenario
+
+from fuzzyq_bullet.video import frame, style
+from fuzzyq_bullet.video.compositor import Compositor
+from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.shots import SPAN, Shots
+from fuzzyq_bullet.video.style import SCENE
+from fuzzyq_bullet.video.timeline import Timeline
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
+
+
+@pytest.fixture(scope="module")
+def far() -> Trajectory:
+    world = scenario(40, 5, size=(60.0, 40.0), start=(5.0, 4.0), goal=(57.0, 36.0))
+    run = drive(world, seconds=20.0, outcome="timeout")
+    # The same record of a robot that drives five times as far.
+    start = run.ticks.position[0]
+    position = start + (run.ticks.position - start) * 5.0
+    return replace(run, ticks=replace(run.ticks, position=position))
+
+
+def test_a_way_in_a_small_arena_is_one_shot() -> None:
+    assert len(Shots(drive(seconds=2.0))) == 1
+
+
+def test_shots_follow_one_another_and_none_spans_more_than_can_be_seen_from_near(
+    far: Trajectory,
+) -> None:
+    shots = Shots(far)
+    assert len(shots) > 3
+    numbers = [shots.at(tick) for tick in range(len(far.ticks.time))]
+    assert numbers[0] == 0
+    assert set(np.diff(numbers)) == {0, 1}
+    assert numbers[-1] == len(shots) - 1
+    for number in range(len(shots)):
+        path = far.ticks.position[np.array(numbers) == number]
+        assert np.ptp(path, axis=0).max() <= SPAN + 1e-9
+
+
+def test_in_every_shot_robot_and_lines_are_legible_and_in_the_picture(far: Trajectory) -> None:
+    scene, timeline = Scene(far), Timeline(far)
+    shots = Shots(far)
+    for number in range(len(shots)):
+        for tick in (shots[number].tick, shots[number].tick + 3):
+            moment = timeline.at(float(far.ticks.time[tick]))
+            scene.draw(moment, None)
+            x, y = moment.position
+            ends = [(x - 0.2, y, 0.0), (x + 0.2, y, 0.0)]
+            left, right = scene.lens.project(np.array(ends))
+            assert np.hypot(*(right - left)) > 20, "pixels across the robot"
+            assert 10 < left[0] < right[0] < SCENE.width - 10
+            assert 10 < left[1] < SCENE.height - 10
+    scene.close()
+
+
+def test_a_shot_looks_the_same_whatever_was_shown_before(far: Trajectory) -> None:
+    shots, timeline = Shots(far), Timeline(far)
+    times = [float(far.ticks.time[shots[k].tick]) + 0.2 for k in range(3)]
+    image = Image.new("RGB", (style.WIDTH, style.HEIGHT), style.PAGE)
+    with Compositor(far) as compositor:
+        for time in times:
+            for region in compositor.changes(timeline.at(time)):
+                image.paste(region.image, (region.x, region.y))
+    box = (SCENE.x, SCENE.y, SCENE.right, SCENE.bottom)
+    after, at_once = (
+        np.asarray(one.crop(box)).astype(int) for one in (image, frame(far, times[-1]))
+    )
+    assert (np.abs(after - at_once).max(axis=-1) > 60).sum() <= 60
