@@ -22,7 +22,7 @@ _CLOCK = Rect(HEADER.right - 240, HEADER.y, 240, HEADER.height)
 _BADGE = 176
 _PILL = (164, 38)
 _BADGES = (19, 17, 15, 13)
-_CARD = Rect(SCENE.x + 120, SCENE.y + 20, 640, 132)
+_CARD = Rect(SCENE.x + 40, SCENE.y + 20, 800, 132)
 _LOWER = SCENE.bottom - 20 - _CARD.height
 _MODE_COLOURS = {"routine": style.LINE, "breakout": style.TARGET, "following": style.TARGET}
 
@@ -155,7 +155,7 @@ def outcome_card(trajectory: Trajectory, *, low: bool) -> DirtyRegion:
     pen.rectangle((0, 0, _CARD.width, 7), colour)
     pen.rectangle((0, 0, _CARD.width - 1, _CARD.height - 1), outline=colour, width=2)
     room = _CARD.width - 40
-    title, size = style.fitting(title, room, (40, 36, 32, 28), bold=True)
+    title, size = style.fitting(title, room, (40, 36, 32, 28, 26, 24, 22), bold=True)
     paint.write(image, (_CARD.width / 2, 64), title, colour, size, bold=True, align="m")
     figures, size = style.fitting(figures, room, (26, 24, 22, 20))
     paint.write(image, (_CARD.width / 2, 108), figures, style.TEXT, size, align="m")

@@ -255,6 +255,7 @@ def test_every_kind_of_run_is_drawn_with_all_text_in_its_box(
         bold: bool = False,
         align: str = "l",
     ) -> None:
+        assert not text.endswith("…") or run.scenario.name == "a" * 100, f"{text} is cut short"
         width = style.text_width(text, size, bold)
         left = at[0] - {"l": 0.0, "m": width / 2, "r": width}[align]
         box = (left, at[1] - 0.74 * size, left + width, at[1])

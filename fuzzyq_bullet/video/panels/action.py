@@ -25,7 +25,7 @@ _DECIDED: paint.Box = (6, 26, _FACTS - 4, ACTION.height - 6)
 _BAR: paint.Box = (60, 187, 126, 198)
 _WEIGHTS = ("ω1", "ω2", "c_f")
 _SIZES = (24, 22, 20, 18, 16)
-_WEIGHT_AT = (0, 40, 102)
+_WEIGHT_AT = (0, 46, 102)
 """Where the columns of the weights begin (pixels)."""
 _WIDEST = math.radians(100.0)
 """A turn beyond this leaves the dial's needle at its end."""
@@ -69,7 +69,7 @@ class Action:
         facts = (
             f"{abs(moment.speed):.2f} m/s",
             f"{away:.2f} m" if away < 100 else f"{away:.0f} m",
-            f"{moment.clearance:.2f} m" if math.isfinite(moment.clearance) else "far away",
+            _metres(moment.clearance),
             self._last_row(index),
         )
         if moment.over and self._trajectory.outcome == "goal":
@@ -116,6 +116,13 @@ class Action:
         pen.rectangle((left - box[0], top - box[1], end - box[0], bottom - box[1]), style.TEXT)
         at = (right + 8 - box[0], 199 - box[1])
         paint.write(image, at, f"{step:.2f} m", style.TEXT, 19, bold=True)
+
+
+def _metres(clearance: float) -> str:
+    """Return a clearance (m) in words; an overlap of nothing is nothing."""
+    if not math.isfinite(clearance):
+        return "far away"
+    return f"{round(clearance, 2) + 0.0:.2f} m".replace("-", "−")
 
 
 def _columns(facts: tuple[str, ...], width: int) -> list[tuple[int, int, str]]:

@@ -114,7 +114,7 @@ def headings(trajectory: Trajectory, canvas: Canvas) -> Curve:
             return f"straight to {name}"
         return f"{abs(degrees)}° {'left' if degrees > 0 else 'right'} of {name}"
 
-    marks = ((math.pi / 2, "left"), (0.0, "aim"), (-math.pi / 2, "right"))
+    marks = ((math.pi / 2, "left"), (0.0, "goal"), (-math.pi / 2, "right"))
     times = trajectory.ticks.time[decisions.tick]
     return Curve(canvas, times, lean, Scale(-math.pi / 2, math.pi / 2, marks), words)
 

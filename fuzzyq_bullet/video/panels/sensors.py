@@ -166,7 +166,7 @@ class Sensors:
 def _mark_aim(pen: ImageDraw.ImageDraw, aim: Floats, middle: float) -> None:
     """Mark the aim, at the rim in its direction if it lies beyond; pixels of the close-up."""
     away = aim - middle
-    length, most = float(np.hypot(*away)), middle - 8 * _FACTOR
+    length, most = float(np.hypot(*away)), middle - 10 * _FACTOR
     x, y = (middle + away * min(1.0, most / max(length, 1e-9))).tolist()
     for colour, width in ((style.PAGE, 5 * _FACTOR), (style.AIM, 3 * _FACTOR)):
         for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
