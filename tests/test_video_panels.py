@@ -1,0 +1,92 @@
+"""What the panels say, of planners with rules and of those without."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from synthetic import drive, scenario
+
+from fuzzyq_bullet.video import paint
+from fuzzyq_bullet.video.compositor import Compositor, closing
+from fuzzyq_bullet.video.decision_hold import DecisionHold
+from fuzzyq_bullet.video.timeline import Timeline
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
+
+RULED = {"sides:", "left freer", "VN", "ω1", "ω2", "c_f"}
+
+
+def texts(run: Trajectory, monkeypatch: pytest.MonkeyPatch, *, over: bool = False) -> set[str]:
+    """Return all that is written in a frame drawn at once, at 0.5 s or at the end."""
+    written: set[str] = set()
+    real = paint.write
+
+    def write(image: Any, at: Any, text: str, *args: Any, **more: Any) -> None:
+        written.add(text)
+        real(image, at, text, *args, **more)
+
+    monkeypatch.setattr(paint, "write", write)
+    with Compositor(run) as compositor:
+        moment = Timeline(run).at(99.0 if over else 0.5)
+        list(compositor.changes(closing(moment) if over else moment))
+    return written
+
+
+def facts(run: Trajectory, **columns: Any) -> Trajectory:
+    """Return the record with other numbers in all its decisions."""
+    count = len(run.decisions.tick)
+    changed = {name: np.tile(value, (count, 1)) for name, value in columns.items()}
+    flat = {name: one[:, 0] if one.shape[1] == 1 else one for name, one in changed.items()}
+    return replace(run, decisions=replace(run.decisions, **flat))
+
+
+@pytest.fixture(scope="module")
+def run() -> Trajectory:
+    return drive(scenario(4, 0), seconds=1.0, outcome="timeout")
+
+
+def test_the_weights_and_c_f_in_force_are_shown(
+    run: Trajectory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = texts(facts(run, weights=(10.0, 0.25), breakout_at=4.0), monkeypatch)
+    assert shown >= {*RULED, "10", "0.25", "4"}
+
+
+@pytest.mark.parametrize(
+    ("columns", "name"),
+    [({}, "the goal"), ({"mode": 2, "aim": (3.0, 5.0), "target": (3.5, 6.0)}, "the way out")],
+)
+def test_every_panel_names_the_same_aim(
+    run: Trajectory, columns: dict[str, Any], name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    towards = float(run.decisions.lines[0, 1])
+    shown = texts(facts(run, heading=towards + np.radians(20.0), **columns), monkeypatch)
+    # Panels 1, 2 and 4: the middle line, d, and the heading.
+    assert shown >= {f"to {name}", f"to {name}:", "20° left", f"of {name}"}
+    assert not any("ahead" in text for text in shown)
+
+
+def test_a_planner_without_rules_has_panels_that_tell_of_what_it_does(
+    run: Trajectory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    blank = drive(scenario(4, 0), seconds=1.0, outcome="timeout", explained=False)
+    shown = texts(blank, monkeypatch)
+    assert not shown & RULED
+    assert shown >= {"2  HEADS FOR", "3  KEEPS CLEAR", "known free", "not checked", "casts no"}
+    decision = DecisionHold(blank).at(Timeline(blank).at(0.5))
+    near = float(blank.ticks.clearance[blank.decisions.tick[decision]])
+    assert f"nearest thing {near:.2f} m" in shown
+
+
+def test_in_the_last_frame_the_robot_is_in_the_goal_and_heads_nowhere(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    arrived = drive(scenario(0, 0, start=(8.0, 5.75)), seconds=30.0)
+    assert arrived.outcome == "goal"
+    shown = texts(arrived, monkeypatch, over=True)
+    assert shown >= {"In the goal", "in the goal"}
+    assert not any("straight" in text for text in shown)
