@@ -33,7 +33,7 @@ FAILURES = {
     "figure-9a": "collision",
     "figure-9b": "collision",
     "figure-10a": "stuck",
-    "figure-11a": "timeout",
+    "figure-11a": "stuck",
 }
 
 
