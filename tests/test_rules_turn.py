@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from synthetic import drive, modes
 
 from fuzzyq_bullet import Trajectory, load_scenario, result_of, run
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.rules_turn import asked
 from fuzzyq_bullet.scenario import with_options
+from tests.helpers.synthetic import drive, modes
 
 if TYPE_CHECKING:
     from pathlib import Path

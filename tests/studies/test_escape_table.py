@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Call
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import settings_for
 from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.escape import TRAPS, EscapePlan, Line, table_of
+from tests.helpers.commands import Call
 
 
 def row(run: int = 0, **changes: Any) -> Row:

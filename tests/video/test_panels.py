@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from synthetic import drive, scenario
 
 from fuzzyq_bullet.video import paint
 from fuzzyq_bullet.video.compositor import Compositor, closing
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.timeline import Timeline
+from tests.helpers.synthetic import drive, scenario
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from PIL import Image
-from synthetic import drive, scenario
 
 from fuzzyq_bullet.video import frame, style
 from fuzzyq_bullet.video.compositor import Compositor
@@ -16,9 +15,12 @@ from fuzzyq_bullet.video.scene import Scene
 from fuzzyq_bullet.video.shots import SPAN, Shots
 from fuzzyq_bullet.video.style import SCENE
 from fuzzyq_bullet.video.timeline import Timeline
+from tests.helpers.synthetic import drive, scenario
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
+
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
