@@ -192,7 +192,7 @@ def test_whatever_the_twists_the_robot_is_never_inside_of_anything_unnoticed():
                 robot=Robot(max_speed=0.9, acceleration=0.6, turn_acceleration=8.0),
                 limits=Limits(steps=20),
             )
-            episode = Episode(world, task)
+            episode = Episode(world, task, rate=1.0 / 0.3)
             while episode.outcome is None:
                 episode.steer(Twist(*rng.uniform((0.2, -2.0), (0.9, 2.0))), told)
             ticks = episode.record().ticks

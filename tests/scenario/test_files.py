@@ -93,8 +93,8 @@ def test_the_least_scenario_is_read_with_defaults():
         ("planner: {name: fuzzy, weights: [1, x]}",
          "x.yaml:4: planner.weights[1]: expected a number, got 'x'"),
         ("planner: {weights: [1, 1]}", "x.yaml:4: planner.weights: unknown key for this planner, "
-         "known to fuzzy, improved-fuzzy; allowed: name, line_angle, turn_unit, distance, rules, "
-         "samples, guard, breakout, breakout_at, following, policy"),
+         "known to fuzzy, improved-fuzzy; allowed: name, line_angle, turn_unit, distance, clear, "
+         "rules, samples, guard, breakout, breakout_at, following, policy"),
     ],
 )  # fmt: skip
 def test_a_wrong_value_is_named_with_line_key_and_what_is_allowed(added, line):

@@ -84,7 +84,7 @@ def test_an_observation_is_stored_and_decided_upon_again(drive):
     stored, decisions = [], []
     with World(task.obstacles, task.arena) as world:
         episode, planner = Episode(world, task), ImprovedFuzzyPlanner(settings)
-        while episode.outcome is None and len(stored) < 60:
+        while episode.outcome is None and len(stored) < 300:
             seen = episode.observe()
             decisions.append(planner.decide(seen))
             stored.append(pickle.dumps(seen))

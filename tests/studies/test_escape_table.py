@@ -11,7 +11,8 @@ import pytest
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import settings_for
 from fuzzyq_bullet.studies.episodes import Row
-from fuzzyq_bullet.studies.escape import TRAPS, EscapePlan, Line, table_of
+from fuzzyq_bullet.studies.escape import EscapePlan
+from fuzzyq_bullet.studies.escape_table import TRAPS, Line, table_of
 from tests.helpers.commands import Call
 
 

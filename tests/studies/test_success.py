@@ -271,7 +271,7 @@ MISTAKES = {
     ("success", "--scheduler", "tcp://localhost:1"): ["--backend dask"],
     ("success", "--out", "/dev/null"): ["/dev/null"],
     ("steps", "--pair", "1"): ["--pair"],
-    ("steps", "--pair", "1,9"): ["--pair", "less than or equal to 2"],
+    ("steps", "--pair", "1,90"): ["--pair", "less than or equal to 20"],
     ("steps", "--count", "10001"): ["--count"],
 }
 

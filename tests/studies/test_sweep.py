@@ -380,7 +380,7 @@ MISTAKES = {
     ("--drive", "wheel"): ["--drive", "did you mean 'wheels'?", "both"],
     ("--planner", "fuzzi"): ["--planner", "did you mean 'fuzzy'?"],
     ("--weights", "1"): ["--weights"],
-    ("--weights", "1,9"): ["--weights", "less than or equal to 2"],
+    ("--weights", "1,90"): ["--weights", "less than or equal to 20"],
     ("--weights", "one,two"): ["--weights", "1,1"],
     ("--seed", "-1"): ["--seed", "-1"],
     ("--out", "/proc/sweep"): ["/proc/sweep"],
