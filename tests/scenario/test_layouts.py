@@ -34,7 +34,7 @@ from fuzzyq_bullet.scenario.layouts.rectangles import overlap
 pytestmark = pytest.mark.slow
 
 TRAPS = ["semicircle", "arc", "u-shape", "long-wall"]
-ALL = [*TRAPS, "rectangles", "maze", "scatter"]
+ALL = [*TRAPS, "rectangles", "maze", "cellular", "scatter"]
 COUNTED = {"rectangles": {"count": 25}, "scatter": {"count": 25}}
 seeds = st.integers(0, 2**63 - 1)
 
@@ -276,6 +276,21 @@ def test_two_boxes_overlap_where_they_share_points(one, other):
         assert overlap(a, b)
     elif depth < -0.05:  # farther off than the points are from one another
         assert not overlap(a, b)
+
+
+# --- cells
+
+
+def test_a_cellular_automaton_leaves_few_pillars_alone():
+    def alone(smoothing, fill):
+        field = realise(asked("cellular", smoothing=smoothing, fill=fill), 3)
+        places = np.array([item.position for item in field.obstacles])
+        assert (np.abs((places / 0.15 - 0.5).round() - (places / 0.15 - 0.5)) < 0.01).all()
+        apart = np.abs(places[:, None] - places).max(axis=2)
+        return np.mean((apart < 0.16).sum(axis=1) == 1)
+
+    assert alone(0, fill=0.05) > 0.5
+    assert alone(4, fill=0.2) < 0.02
 
 
 # --- mazes
