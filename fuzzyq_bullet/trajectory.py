@@ -43,7 +43,7 @@ _SIDES = ("left", "right")
 class Ticks:
     """The robot's state at every tick of the drive, first the start and last the end.
 
-    One every 0.15 s with wheels, one for each step (Eq. 17) in the kinematic drive. Every array
+    One every 0.05 s with wheels, one for each step (Eq. 17) in the kinematic drive. Every array
     has a row for each of the T ticks.
     """
 

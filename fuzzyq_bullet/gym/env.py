@@ -30,8 +30,6 @@ Vector: TypeAlias = NDArray[np.float32]
 
 HALFWAY = 5.0
 """Distance (m) that is told as a half."""
-
-
 HOLD = 0.3
 """How long an action lasts on wheels (s)."""
 

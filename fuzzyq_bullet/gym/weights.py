@@ -36,7 +36,7 @@ class WeightsEnv(EpisodeEnv):
 
     Action, shape (2,), each from −1 to 1:
         0. ω1 − 1, the weight of the step (Eq. 17): −1 stands, 1 doubles the step.
-        1. ω2 − 1, the weight of the turn: −1 goes straight for the goal, 1 doubles the turn.
+        1. ω2 − 1, the weight of the turn: −1 goes straight for the aim, 1 doubles the turn.
 
     Both weights are 1 where the action is 0. The escape from dead ends and the safety filter work
     as in ``improved-fuzzy``: the weights act towards temporary goals too.

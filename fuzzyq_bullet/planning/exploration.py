@@ -98,7 +98,7 @@ class ExplorationGraph:
         Args:
             goal: The goal (m).
             kept: The frontier that the robot is on its way to.
-            switch: Another one must promise a path that is so much shorter (m).
+            switch: How much shorter the path over another one must be (m).
 
         Returns:
             The frontier, and the points of the path from the latest node to it; None when every
@@ -113,12 +113,11 @@ class ExplorationGraph:
             return None
         lengths, before = shortest_paths(self._nodes)
         to_them = [lengths[one.node] + one.distance for one in self._frontiers]
-        if kept is not None and kept in self._frontiers:
+        if kept in self._frontiers:
             to_them[self._frontiers.index(kept)] -= switch
-            chosen = self._cheapest(to_them, goal)
-            chosen = kept if math.dist(chosen.point, kept.point) <= NEAR else chosen
-        else:
-            chosen = self._cheapest(to_them, goal)
+        chosen = self._cheapest(to_them, goal)
+        if kept in self._frontiers and math.dist(chosen.point, kept.point) <= NEAR:
+            chosen = kept  # the same place, seen from elsewhere
         path, at = [chosen.point], chosen.node
         while at >= 0:
             path.append(self._nodes[at].point)

@@ -1,4 +1,4 @@
-"""The safety filter: no step is longer than what is free along the path that the robot takes."""
+"""The safety filter: no robot drives farther than what is free along the path that it takes."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ WIDEST = math.radians(90.0)
 
 
 def safety_filter(decision: Decision, observation: Observation) -> Decision:
-    """Return the decision with its step, and its turn if necessary, limited to what is free.
+    """Return the decision limited to what is free.
 
-    The paper's point robot faces the new heading at once: one corridor along it is enough.
+    The paper's point robot faces the new heading at once: one corridor along it caps its step. On
+    wheels the reach is capped, from which the speed follows, and the turn if necessary.
     """
     if observation.motion is not None:
         return _filtered_on_wheels(decision, observation, observation.motion)

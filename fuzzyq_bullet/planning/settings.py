@@ -60,7 +60,8 @@ class RecoverySettings(RoutineSettings):
     """Parameters of the breakout, the sustained avoidance (Section 4) and the safety filter."""
 
     guard: Annotated[bool, Strict()] = Field(
-        default=True, description="Whether a corridor along the final heading caps the step."
+        default=True,
+        description="Whether the safety filter limits how far it goes to what is free.",
     )
     breakout: Annotated[bool, Strict()] = Field(
         default=True, description="Whether it breaks out of dead ends (4.2)."

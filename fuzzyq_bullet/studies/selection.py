@@ -34,7 +34,7 @@ MORE_TURNS = (0.25, 0.5, 1.0, 1.5)
 MORE_BREAKOUTS = (2.0, 3.0, 5.0)
 
 HALF = Weights(0.5, 0.5, USUAL_BREAKOUT)
-"""What the paper holds its learned weights against."""
+"""What the paper calls the optimum that it found."""
 ONE = Weights(1.0, 1.0, USUAL_BREAKOUT)
 """What the controller says, as it says it."""
 
