@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.planning import MODES
 from fuzzyq_bullet.trajectory import Decisions, Trajectory
 
+ALL = slice(None)
 CLEARLY = math.radians(3.0)
 """A smaller turn (rad) is not counted as one."""
 
@@ -19,28 +20,29 @@ def has_rules(decisions: Decisions) -> bool:
     return bool(np.isfinite(decisions.rules).any())
 
 
-def asked(decisions: Decisions) -> NDArray[np.bool_]:
-    """Return of each decision whether its rules were asked, shape (D,).
+def asked(decisions: Decisions, which: int | slice = ALL) -> NDArray[np.bool_]:
+    """Return of each decision, or of one, whether its rules were asked.
 
     They are not where the planner aims at a gap exactly. Version 0.1.0 did not record that; its
     ways out decided in place of the rules.
     """
-    unknown = np.isnan(decisions.exact)
-    routine = decisions.mode == MODES.index("routine")
-    told = np.isfinite(decisions.turn)
-    return np.asarray(told & np.where(unknown, routine, decisions.exact == 0.0))
+    exact = decisions.exact[which]
+    routine = decisions.mode[which] == MODES.index("routine")
+    told = np.isfinite(decisions.turn[which])
+    return np.asarray(told & np.where(np.isnan(exact), routine, exact == 0.0))
 
 
-def controller_turns(trajectory: Trajectory) -> NDArray[np.float64]:
-    """Return by how much the rules turned each decision off its aim, ω2·N_a·A_p (rad), shape (D,).
+def controller_turns(trajectory: Trajectory, which: int | slice = ALL) -> NDArray[np.float64]:
+    """Return by how much the rules turned each decision, or one, off its aim: ω2·N_a·A_p (rad).
 
     It is 0 where they were not asked, and NaN where it is not known: for a planner without rules,
     and for one that is not there any more, whose A_p was not kept.
     """
     decisions = trajectory.decisions
     unit = getattr(trajectory.scenario.planner, "turn_unit", math.nan)
-    turns = decisions.weights[:, 1] * decisions.turn * float(unit)
-    return np.where(np.isfinite(decisions.turn) & ~asked(decisions), 0.0, turns)
+    turn = decisions.turn[which]
+    turns = decisions.weights[which, 1] * turn * float(unit)
+    return np.where(np.isfinite(turn) & ~asked(decisions, which), 0.0, turns)
 
 
 def share_turned(trajectory: Trajectory) -> float | None:

@@ -59,7 +59,7 @@ def side_of(trajectory: Trajectory, index: int) -> int:
 
 def is_asked(decisions: Decisions, index: int) -> bool:
     """Whether the controller's rules had a say in a decision."""
-    return bool(asked(decisions)[index])
+    return bool(asked(decisions, index))
 
 
 def aim_name(trajectory: Trajectory, index: int) -> str:
@@ -142,7 +142,7 @@ def _steers(trajectory: Trajectory, index: int) -> str:
 def _waits(trajectory: Trajectory, index: int, lean: float) -> str:
     """Return why the robot cannot head for where it wants to yet; empty if it can."""
     decisions = trajectory.decisions
-    wanted = float(controller_turns(trajectory)[index])
+    wanted = float(controller_turns(trajectory, index))
     held = abs(math.remainder(lean - wanted, math.tau)) > _HELD_BACK  # never, if not known
     if not held and float(decisions.reach[index]) >= _STANDS:
         return ""

@@ -8,7 +8,7 @@ import pytest
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning import MODES, ImprovedFuzzySettings, Observation, RangeSensor
+from fuzzyq_bullet.planning import MODES, ImprovedFuzzySettings
 from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
 from fuzzyq_bullet.planning.exploration import NEAR
@@ -118,31 +118,20 @@ def test_an_escape_says_where_it_is_going():
         assert np.hypot(*(position[ticks[index] :] - target).T).min() < 0.5
 
 
-def blocked_ahead(position, more_room):
+def blocked_ahead(more_room):
     """Return what is observed where only the way to the goal is blocked, with room on one side."""
-    bearing = math.atan2(-position[1], 100.0 - position[0])
 
     def sense(headings):
-        beside = [one - bearing for one in headings]
-        return [0.1 if abs(one) < 0.5 else 1.0 if one * more_room > 0.0 else 0.9 for one in beside]
+        return [
+            0.1 if abs(one) < 0.5 else 1.0 if one * more_room > 0.0 else 0.9 for one in headings
+        ]
 
-    return Observation(
-        time=0.0,
-        position=position,
-        heading=bearing,
-        speed=0.0,
-        turn_rate=0.0,
-        goal=(100.0, 0.0),
-        goal_radius=0.2,
-        range=1.0,
-        radius=0.22,
-        sensor=RangeSensor(sense, lambda headings: np.array(sense(headings)) + 0.2),
-    )
+    return observe(Field(), (0.0, 0.0), sense=sense)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_tie_of_both_sides_is_broken_by_the_side_with_more_room(sign):
-    aim = Escape(following=False).aim(blocked_ahead((0.0, 0.0), sign), 1.0)
+    aim = Escape(following=False).aim(blocked_ahead(sign), 1.0)
     assert aim.mode == "breakout"
     assert aim.bearing * sign > 0.4
 
