@@ -44,9 +44,29 @@ def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
     """
     scenario = realise(scenario)
     check(scenario)
+    return run_with(planner_of(scenario), scenario, progress=progress)
+
+
+def planner_of(scenario: Scenario) -> Planner:
+    """Build the planner that a scenario asks for, for one episode.
+
+    Raises:
+        UserError: If there is no such planner, or its policy cannot be used.
+        PlannerError: If building it fails.
+    """
     # The first stream of the seed places the obstacles; the planner has the second to itself.
     rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(1,)))
-    planner = build_planner(scenario.planner, rng)
+    return build_planner(scenario.planner, rng)
+
+
+def run_with(
+    planner: Planner, scenario: Scenario, *, progress: Progress | None = None
+) -> Trajectory:
+    """Run one episode of a realised scenario with a planner, whichever the scenario names.
+
+    Raises:
+        PlannerError: If the planner raises, exits or decides what cannot be carried out.
+    """
     build = World if scenario.drive == "wheels" else SensorWorld
     with build(scenario.obstacles, scenario.arena, model=scenario.robot.spec) as world:
         return run_in(world, scenario, planner, progress=progress)

@@ -60,8 +60,11 @@ class Result(BaseModel):
         collisions: Contacts: 0, or 1, since the first one ends the run.
         turning_rad: Sum of all changes of direction, left and right (rad).
         modes: Decisions in each mode.
-        rules_turn: Share of decisions in which the fuzzy rules turn the robot off its aim by more
-            than 3° (ω2·N_a·A_p), 0 to 1; null for a planner without rules.
+        mean_jerk: Mean of |jerk|, the change of the acceleration from tick to tick (m/s³); null in
+            the kinematic drive, which has no speed, and for less than four ticks.
+        rules_turn: Share of the decisions with something within the range of the sensor in which
+            the fuzzy rules turn the robot off its aim by more than 3° (ω2·N_a·A_p), 0 to 1; null
+            for a planner without rules, and where nothing ever came so near.
         digest: Hash of the exact trajectory.
         version: Version of fuzzyq_bullet.
     """
@@ -82,6 +85,7 @@ class Result(BaseModel):
     min_clearance_m: float | None
     collisions: int
     turning_rad: float
+    mean_jerk: float | None = None
     modes: ModeCounts
     rules_turn: float | None = None
     digest: str
@@ -97,7 +101,7 @@ def result_of(trajectory: Trajectory) -> Result:
     counts = np.bincount(trajectory.decisions.mode, minlength=len(MODES))
     driven = float(np.hypot(*moves.T).sum())
     shortest = _shortest(scenario)
-    turned = share_turned(trajectory)
+    turned, jerk = share_turned(trajectory), _mean_jerk(trajectory)
     weighted = None if shortest is None else spl(trajectory.outcome == "goal", shortest, driven)
     return Result(
         scenario=scenario.name,
@@ -114,6 +118,7 @@ def result_of(trajectory: Trajectory) -> Result:
         min_clearance_m=round(clearance, 6) + 0.0 if math.isfinite(clearance) else None,
         collisions=int(trajectory.collision is not None),
         turning_rad=round(float(np.abs(turns).sum()), 6),
+        mean_jerk=None if jerk is None else round(jerk, 6),
         modes=ModeCounts(**dict(zip(MODES, counts.tolist(), strict=True))),
         rules_turn=None if turned is None else round(turned, 6),
         digest=trajectory.digest(),
@@ -170,6 +175,15 @@ def touch_in_words(what: str, point: tuple[float, float], time: float, place: st
     x, y = (plain(value, 2) for value in point)
     noted = f" ({place})" if place else ""
     return f"touched {what}{noted} at ({x}, {y}) after {time:.2f} s"
+
+
+def _mean_jerk(trajectory: Trajectory) -> float | None:
+    """Return the mean of |jerk| (m/s³) over all ticks but the last, which may be a short one."""
+    ticks = trajectory.ticks
+    if trajectory.scenario.drive != "wheels" or ticks.time.size < 4:
+        return None
+    period = ticks.time[1] - ticks.time[0]
+    return float(np.abs(np.diff(ticks.speed[:-1], 2)).mean() / period**2)
 
 
 def _is_crowded(scenario: Scenario) -> bool:

@@ -55,6 +55,25 @@ class OccupancyGrid:
             ((y - self.low[1]) / self.cell).astype(np.int64),
         )
 
+    def cover(self, points: Floats, radius: float) -> None:
+        """Mark the cells as occupied whose middle is within a radius (m) of one of the points.
+
+        Args:
+            points: Points on the grid (m), shape (K, 2).
+            radius: More than half a cell.
+        """
+        most = math.ceil(radius / self.cell) + 1
+        around = np.arange(-most, most + 1)
+        cells = np.floor((points - self.low) / self.cell)
+        columns, rows = (cells[:, k, None] + around for k in (0, 1))
+        x, y = (self.low[k] + (part + 0.5) * self.cell for k, part in ((0, columns), (1, rows)))
+        away = np.hypot((x - points[:, :1])[:, :, None], (y - points[:, 1:])[:, None, :])
+        which, i, j = np.nonzero(away <= radius)
+        column, row = columns[which, i].astype(int), rows[which, j].astype(int)
+        inside = (column >= 0) & (column < self.free.shape[0]) & (row >= 0)
+        inside &= row < self.free.shape[1]
+        self.free[column[inside], row[inside]] = False
+
     def distances(
         self, source: tuple[int, int], moves: Moves, *, past_corners: bool = False
     ) -> Floats:

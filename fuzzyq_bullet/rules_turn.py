@@ -46,12 +46,16 @@ def controller_turns(trajectory: Trajectory, which: int | slice = ALL) -> NDArra
 
 
 def share_turned(trajectory: Trajectory) -> float | None:
-    """Return the share of decisions in which the rules turn by more than ``CLEARLY``.
+    """Return the share of decisions near something in which the rules turn by over ``CLEARLY``.
+
+    Near is within the range of the sensor: elsewhere the rules have nothing to turn for.
 
     Returns:
-        0 to 1; None for a planner without rules.
+        0 to 1; None for a planner without rules, and where nothing ever came near.
     """
     turns = controller_turns(trajectory)
-    if not np.isfinite(turns).any():
+    seen = trajectory.scenario.robot.spec.sensor_range
+    near = trajectory.ticks.clearance[trajectory.decisions.tick] < seen
+    if not near.any() or not np.isfinite(turns).any():
         return None
-    return float((np.abs(np.nan_to_num(turns)) > CLEARLY).mean())
+    return float((np.abs(np.nan_to_num(turns[near])) > CLEARLY).mean())

@@ -34,8 +34,15 @@ def turned(*degrees: float, exact: tuple[float, ...]) -> Trajectory:
 
 def test_a_turn_counts_from_3_degrees_on_and_only_where_the_rules_are_asked() -> None:
     record = turned(3.1, -3.1, 2.9, -2.9, 30.0, 30.0, exact=(0, 0, 0, 0, 0, 1))
-    share = result_of(record).rules_turn
-    assert share == round(3 / len(record.decisions.tick), 6)
+    near = record.ticks.clearance[record.decisions.tick] < 1.0
+    assert near[:6].all()
+    assert result_of(record).rules_turn == round(3 / near.sum(), 6)
+
+
+def test_where_nothing_is_within_range_there_is_nothing_to_turn_for() -> None:
+    record = turned(30.0, exact=(0.0,))
+    ticks = replace(record.ticks, clearance=np.full_like(record.ticks.clearance, 1.01))
+    assert result_of(replace(record, ticks=ticks)).rules_turn is None
 
 
 def test_a_planner_without_rules_has_no_share() -> None:
@@ -52,7 +59,8 @@ def test_the_share_of_a_real_run_is_that_of_its_headings() -> None:
     facts = record.decisions
     # The point robot's safety filter changes no heading: what is off the middle line is the rules'.
     lean = np.remainder(facts.heading - facts.lines[:, 1] + math.pi, math.tau) - math.pi
-    share = float((np.abs(lean) > math.radians(3.0)).mean())
+    near = record.ticks.clearance[facts.tick] < 1.0
+    share = float((np.abs(lean[near]) > math.radians(3.0)).mean())
     assert 0.0 < share < 1.0
     assert result_of(record).rules_turn == pytest.approx(share, abs=1e-6)
 

@@ -130,7 +130,7 @@ def _judge(findings: Findings, last: Swept) -> None:
 def _swept(study: Study, stage: Stage, out: Path, pool: Pool, more: dict[str, Any]) -> Swept:
     """Run one sweep of a study in its folder, and say how it went."""
     from fuzzyq_bullet.studies.study import Swept
-    from fuzzyq_bullet.studies.sweep import sweep, work, work_for_row
+    from fuzzyq_bullet.studies.sweep import sweep
 
     for note in stage.notes:
         say(note)
@@ -143,7 +143,7 @@ def _swept(study: Study, stage: Stage, out: Path, pool: Pool, more: dict[str, An
             folder,
             settings,
             pool=pool,
-            work=work if study.kept else work_for_row,
+            work=study.work(),
             progress=progress,
         )
     state = done.state

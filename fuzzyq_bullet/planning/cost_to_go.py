@@ -17,6 +17,11 @@ from fuzzyq_bullet.planning.scan import Point
 
 CELL = 0.1
 """Side of a cell (m); doubled until the grid has no more than ``MOST`` cells."""
+TIGHT = 3.0
+"""What a path costs more for which there seems to be no room (m)."""
+NO_HITS = np.zeros((0, 2))
+GRAIN = 0.03
+"""Hits no farther apart than about this are one (m)."""
 MOST = 50_000
 MARGIN = 1.0
 """How far the grid reaches beyond everything known (m)."""
@@ -24,22 +29,29 @@ _ALONG = np.linspace(0.0, 1.0, 9)[:, None]
 
 
 class ObstacleMap:
-    """The boundaries of all obstacles seen so far: lines that the robot's centre cannot cross."""
+    """What has been seen of all obstacles so far: where the robot's centre cannot be."""
 
     def __init__(self) -> None:
         # Loading it takes long: not while the robot drives, and not when a scenario is only read.
         import scipy.sparse.csgraph  # noqa: F401
 
         self._ends = np.zeros((4, 0))  # rows: x and y of one end, x and y of the other
+        self._hits = NO_HITS
+        self._radius = 0.0
         self._low, self._high = (math.inf, math.inf), (-math.inf, -math.inf)
 
-    def add(self, boundary: Floats) -> None:
+    def add(self, boundary: Floats, hits: Floats = NO_HITS, radius: float = 0.0) -> None:
         """Remember what was seen.
 
         Args:
-            boundary: Lines, shape (W, 2, 2), as in ``Scan.boundary``. None may be longer than
-                eight cells: a longer one would leak.
+            boundary: Lines, shape (W, 2, 2), as in ``Scan.boundary``: the centre cannot cross them.
+                None may be longer than eight cells: a longer one would leak.
+            hits: Points, shape (H, 2), as in ``Scan.hits``: the disc cannot cover them.
+            radius: Radius of the disc (m).
         """
+        self._radius = radius
+        grains = np.concatenate([self._hits, (hits / GRAIN).round()])
+        self._hits = np.unique(grains, axis=0)
         if len(boundary):
             self._ends = np.concatenate([self._ends, boundary.reshape(-1, 4).T], axis=1)
             corners = boundary.reshape(-1, 2)
@@ -59,19 +71,27 @@ class ObstacleMap:
         return not bool(((side * other <= 0.0) & (start_side * goal_side <= 0.0)).any())
 
     def cost_to_go(self, goal: Point, starts: Sequence[Point]) -> list[float]:
-        """Return the length (m) of the shortest path from each start to the goal.
+        """Return what the shortest path from each start to the goal costs (m).
 
-        Infinite where the known boundaries leave none, as far as the grid can tell.
+        It is its length. Where the points that were hit leave no path, but the known boundaries do,
+        it costs ``TIGHT`` more: the grid may be wrong about a gap. Infinite where neither do.
         """
+        costs = self._lengths(goal, starts, self._hits)
+        if not all(map(math.isfinite, costs)):
+            tight = [length + TIGHT for length in self._lengths(goal, starts, NO_HITS)]
+            costs = [a if math.isfinite(a) else b for a, b in zip(costs, tight, strict=True)]
+        return costs
+
+    def _lengths(self, goal: Point, starts: Sequence[Point], hits: Floats) -> list[float]:
         points = (*starts, goal)
-        grid = self._grid(_least(self._low, *points), _greatest(self._high, *points))
+        grid = self._grid(_least(self._low, *points), _greatest(self._high, *points), hits)
         columns, rows = grid.cells(*np.array(points).T)
         lengths = grid.distances((columns[-1], rows[-1]), EIGHT)
         found: list[float] = lengths[columns[:-1], rows[:-1]].tolist()
         return found
 
-    def _grid(self, low: Point, high: Point) -> OccupancyGrid:
-        """Return a grid over a rectangle (m) and ``MARGIN`` around it; boundaries are occupied."""
+    def _grid(self, low: Point, high: Point, hits: Floats) -> OccupancyGrid:
+        """Return a grid over a rectangle (m) and ``MARGIN`` around it, what was seen in it."""
         low, high = (low[0] - MARGIN, low[1] - MARGIN), (high[0] + MARGIN, high[1] + MARGIN)
         width, depth = high[0] - low[0], high[1] - low[1]
         cell = CELL
@@ -80,6 +100,9 @@ class ObstacleMap:
         grid = OccupancyGrid.over(low, high, cell)
         x1, y1, x2, y2 = self._ends
         grid.free[grid.cells(x1 + (x2 - x1) * _ALONG, y1 + (y2 - y1) * _ALONG)] = False
+        # A cell is taken for free if the disc may be anywhere in its middle half.
+        if self._radius > cell:
+            grid.cover(hits * GRAIN, self._radius - cell / 2.0)
         return grid
 
 

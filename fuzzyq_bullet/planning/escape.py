@@ -16,7 +16,7 @@ import math
 from fuzzyq_bullet.planning.aim import Aim, along_heading, towards_goal
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Mode
-from fuzzyq_bullet.planning.exploration import NEAR, ExplorationGraph
+from fuzzyq_bullet.planning.exploration import NEAR, ExplorationGraph, ToGo
 from fuzzyq_bullet.planning.frontiers import Frontier
 from fuzzyq_bullet.planning.path_follower import NEARER, PathFollower
 from fuzzyq_bullet.planning.ray_search import eased, ray_search
@@ -61,6 +61,10 @@ class Escape:
         self._since = 0.0
         self._straight = False
         self._mark = math.nan
+
+    def know(self, to_go: ToGo) -> None:
+        """Choose ways out by the true way on from now on (``studies.escape.bounds``)."""
+        self._graph.know(to_go)
 
     def aim(self, observation: Observation, breakout_at: float) -> Aim:
         """Return the goal, or a temporary goal where the way to it is blocked.

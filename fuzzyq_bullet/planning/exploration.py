@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
@@ -16,6 +17,9 @@ from fuzzyq_bullet.planning.frontiers import (
     find_frontiers,
 )
 from fuzzyq_bullet.planning.scan import Point, Scan, scan_360
+
+ToGo: TypeAlias = Callable[[float, float], float]
+"""The true length (m) of the shortest path from a point (x, y; m) to the goal."""
 
 SPACING = 0.05
 """Distance between two nodes that are added while the robot drives (m)."""
@@ -68,6 +72,11 @@ class ExplorationGraph:
         self._obstacles = ObstacleMap()
         self._blacklist: list[Point] = []
         self._corners_too = False
+        self._to_go: ToGo | None = None
+
+    def know(self, to_go: ToGo) -> None:
+        """Judge frontiers by the true way on from now on (``studies.escape.bounds``)."""
+        self._to_go = to_go
 
     def pass_by(self, here: Point) -> None:
         """Add the path driven so far, up to a position (m)."""
@@ -81,7 +90,7 @@ class ExplorationGraph:
         node = self._nodes[index]
         node.scan = scan = scan_360(observation)
         self._scanned.append(node)
-        self._obstacles.add(scan.boundary)
+        self._obstacles.add(scan.boundary, scan.hits, scan.radius)
         for other, known in enumerate(self._nodes[:index]):
             if node.sees(known.point):
                 node.edges[other] = known.edges[index] = math.dist(known.point, here)
@@ -149,6 +158,12 @@ class ExplorationGraph:
 
     def _cheapest(self, lengths: list[float], goal: Point) -> Frontier:
         """Return the frontier with the shortest path to it (m, one for each) and on to the goal."""
+        if (to_go := self._to_go) is not None:
+            known = [
+                length + to_go(*one.point)
+                for length, one in zip(lengths, self._frontiers, strict=True)
+            ]
+            return self._frontiers[min(range(len(known)), key=known.__getitem__)]
         costs = [
             length + (DOUBT if one.beyond is None else 0.0) + math.dist(one.point, goal)
             for length, one in zip(lengths, self._frontiers, strict=True)

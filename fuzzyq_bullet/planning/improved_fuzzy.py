@@ -7,6 +7,7 @@ import math
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.escape import Escape
+from fuzzyq_bullet.planning.exploration import ToGo
 from fuzzyq_bullet.planning.fuzzy import Routine, Situation
 from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings, RecoverySettings
@@ -29,6 +30,11 @@ class ImprovedFuzzyBase:
         self._guard = settings.guard
         self._breakout_at = settings.breakout_at
         self.mode: Mode = "routine"
+
+    def know(self, to_go: ToGo) -> None:
+        """Choose ways out by the true way on, which no robot knows (``studies.escape.bounds``)."""
+        if self._escape is not None:
+            self._escape.know(to_go)
 
     def sense(self, observation: Observation) -> Situation:
         """Choose the aim, and return what is seen towards it: the first half (Steps 4 to 9)."""

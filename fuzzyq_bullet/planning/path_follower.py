@@ -37,6 +37,8 @@ SLIGHT = ASIDE[:2]
 """Those that are sensed together with the path itself: half the time one of them is free."""
 AT_ONCE = 6
 """How many of the others are tried in one batch of rays."""
+CREEP = 0.03
+"""With no more free than this the robot does not move at all (m)."""
 LEAST = 0.5 * STEP_UNIT
 """How much must be free to turn aside (m)."""
 
@@ -128,11 +130,17 @@ def _must_aim(observation: Observation, heading: float, length: float, narrow: b
 
 
 def _aside(observation: Observation, heading: float, enough: float) -> Segment | None:
-    """Return the least turn from a heading that is free for long enough, if one is."""
+    """Return the least turn from a heading that is free for long enough.
+
+    Where none is, the robot stands in a gap that is hardly wider than itself: it leaves by the
+    turn that lets it move farthest.
+    """
+    most = CREEP, heading
     further = range(len(SLIGHT), len(ASIDE), AT_ONCE)
     for turns in (SLIGHT, *(ASIDE[first : first + AT_ONCE] for first in further)):
         headings = [heading + turn for turn in turns]
         for other, free in zip(headings, observation.sense(headings), strict=True):
             if free >= enough:
                 return Segment(other, enough)
-    return None
+            most = max(most, (free, other))
+    return Segment(most[1], most[0], exact=True) if most[0] > CREEP else None

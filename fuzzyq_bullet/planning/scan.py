@@ -51,6 +51,9 @@ class Scan:
             them, and nothing stops the disc on both sides at once, as in a corner.
         boundary: Where the disc's centre would be stopped: lines (m), shape (W, 2, 2), both ends
             of each, x and y.
+        hits: Where its rays met something (m), shape (H, 2). Rays get through gaps that the disc
+            does not: they see the far side of a pocket before the robot is in it.
+        radius: Radius of the disc (m).
     """
 
     range: float
@@ -58,6 +61,8 @@ class Scan:
     lengths: list[float]
     gaps: list[int]
     boundary: Floats
+    hits: Floats
+    radius: float
 
     def free(self, heading: float) -> float:
         """Return the free distance (m) along a heading: the lesser of its two neighbours."""
@@ -106,6 +111,8 @@ def scan_360(observation: Observation) -> Scan:
         lengths.tolist(),
         _gaps(hits, headings, lengths, observation.radius),
         boundary,
+        np.array(observation.position) + np.column_stack([hits.real, hits.imag]),
+        observation.radius,
     )
 
 

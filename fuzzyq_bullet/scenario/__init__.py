@@ -22,7 +22,7 @@ from fuzzyq_bullet.scenario.models import (
     Start,
     scenario_schema,
 )
-from fuzzyq_bullet.scenario.options import random_task, with_options
+from fuzzyq_bullet.scenario.options import cellular_task, random_task, with_options
 from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
 __all__ = [
@@ -42,6 +42,7 @@ __all__ = [
     "Scenario",
     "Start",
     "bundled_scenarios",
+    "cellular_task",
     "check",
     "dump_scenario",
     "find_conflicts",

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.planning import PlannerSettings, settings_for
-from fuzzyq_bullet.scenario import Drive, Limits, Scenario, random_task
+from fuzzyq_bullet.scenario import Drive, Limits, Scenario, cellular_task, random_task
 from fuzzyq_bullet.trajectory import Outcome
 
 Place: TypeAlias = tuple[str, int, int]
@@ -32,7 +32,7 @@ _ADDRESS = re.compile(r"0x[0-9a-fA-F]+")
 
 @dataclass(frozen=True)
 class Environment:
-    """A walled 10 × 10 m arena with a start, a goal and obstacles, all out of one seed.
+    """A walled 10 × 10 m arena, or a corridor of pillars (``cellular``), all out of one seed.
 
     Attributes:
         layout: Name of the layout that draws the obstacles.
@@ -99,7 +99,10 @@ class Job:
     def scenario(self) -> Scenario:
         """Return what is to be run, with its obstacles still to be drawn."""
         where = self.environment
-        task = random_task(where.seed, layout=where.layout, count=where.count)
+        if where.layout == "cellular":
+            task = cellular_task(where.seed)
+        else:
+            task = random_task(where.seed, layout=where.layout, count=where.count)
         return task.model_copy(
             update={"planner": self.settings, "drive": self.drive, "limits": self.limits}
         )
@@ -145,6 +148,10 @@ class Row(BaseModel):
         spl: Success weighted by path length; None where there is no way.
         min_clearance_m: Least distance to anything (m); None when there was nothing.
         collisions: 0 or 1.
+        turning_rad: Sum of all changes of direction (rad).
+        mean_jerk: Mean of |jerk| (m/s³); None in the kinematic drive.
+        rules_turn: Share of the decisions near something in which the rules turn the robot; None
+            for a planner without rules.
         digest: Hash of the exact trajectory.
         layout: Name of the layout that drew the obstacles.
         error: What went wrong with the episode itself; None normally.
@@ -166,6 +173,9 @@ class Row(BaseModel):
     spl: float | None = None
     min_clearance_m: float | None = None
     collisions: int | None = None
+    turning_rad: float | None = None
+    mean_jerk: float | None = None
+    rules_turn: float | None = None
     digest: str | None = None
     layout: str
     error: str | None = None

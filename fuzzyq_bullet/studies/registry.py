@@ -13,7 +13,7 @@ _BUNDLED = {
     "success": "fuzzyq_bullet.studies.success.study",
     "steps": "fuzzyq_bullet.studies.steps.study",
     "learning": "fuzzyq_bullet.studies.learning.study",
-    "escape": "fuzzyq_bullet.studies.escape",
+    "escape": "fuzzyq_bullet.studies.escape.study",
 }
 """The modules of the package's own, in the order of a report."""
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,49}")

@@ -44,6 +44,8 @@ class Swept:
 
 Sense: TypeAlias = Literal["exactly", "at most", "at least"]
 """On which side of its bound a figure should be."""
+Work: TypeAlias = Callable[[dict[str, Any]], dict[str, Any]]
+"""What does a job in a worker process; job and answer as JSON can say them."""
 Results: TypeAlias = Mapping[str, Swept]
 """What came of the plans of a study, by stage."""
 
@@ -178,6 +180,12 @@ class Study(BaseModel):
             UserError: If an option is wrong.
         """
         yield Stage(self.name, self.plan(), self.planner_set())
+
+    def work(self) -> Work:
+        """Return what turns a job into its row, in a worker: a function of a module."""
+        from fuzzyq_bullet.studies.sweep import work, work_for_row
+
+        return work if self.kept else work_for_row
 
     def findings(self, results: Results) -> Findings:
         """Return what the rows say; nothing is run.

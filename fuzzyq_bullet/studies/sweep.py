@@ -16,9 +16,10 @@ from fuzzyq_bullet.errors import PlannerError
 from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.metrics import result_of
-from fuzzyq_bullet.scenario import realise
+from fuzzyq_bullet.scenario import Scenario, realise
 from fuzzyq_bullet.studies.episodes import Job, Row, as_csv
 from fuzzyq_bullet.studies.storage import Folder, Journal
+from fuzzyq_bullet.studies.study import Work
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.workers import Answer, Pool, WorkerPool
 
@@ -30,7 +31,6 @@ TIMEOUT = 3600.0
 MEMORY_MB = 4096
 """Memory (MB) that one worker may use."""
 
-Work: TypeAlias = Callable[[dict[str, Any]], dict[str, Any]]
 Progress: TypeAlias = Callable[["State"], None]
 """Called at the start and after every row."""
 
@@ -43,8 +43,13 @@ class Done:
     record: bytes | None = None
 
 
-def run_job(job: Job) -> Done:
-    """Run one episode. Whatever it raises becomes its row, not the end of the sweep."""
+def run_job(job: Job, run: Callable[[Scenario], Trajectory] = run) -> Done:
+    """Run one episode. Whatever it raises becomes its row, not the end of the sweep.
+
+    Args:
+        job: The episode.
+        run: What drives it, if not its planner alone.
+    """
     way: bool | None = None
     try:
         scenario = realise(job.scenario())
@@ -60,7 +65,11 @@ def run_job(job: Job) -> Done:
 
 def work(order: dict[str, Any]) -> dict[str, Any]:
     """Do ``run_job`` in a worker process; job and row as JSON, a record in Base64."""
-    done = run_job(Job.of_order(order))
+    return answer(run_job(Job.of_order(order)))
+
+
+def answer(done: Done) -> dict[str, Any]:
+    """Return what became of a job as JSON can say it."""
     record = None if done.record is None else base64.b64encode(done.record).decode()
     return {"row": done.row.model_dump(mode="json"), "record": record}
 

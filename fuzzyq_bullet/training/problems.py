@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from fuzzyq_bullet.episode import Episode
+from fuzzyq_bullet.ground_truth.distance_field import DistanceField
 from fuzzyq_bullet.learning.learners import Features
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.robot import RobotState
@@ -20,7 +21,7 @@ from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.q_learning import act, sense
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.scenario.models import Limits, Start
-from fuzzyq_bullet.training.rewards import DistanceField, Reward
+from fuzzyq_bullet.training.rewards import Reward
 from fuzzyq_bullet.training.tasks import Tasks
 
 PATIENCE = 10.0

@@ -10,7 +10,7 @@ import pytest
 
 from fuzzyq_bullet.geometry import Field, wrap_angle
 from fuzzyq_bullet.planning import Motion, Observation, RangeSensor
-from fuzzyq_bullet.planning.path_follower import PATIENCE, PathFollower
+from fuzzyq_bullet.planning.path_follower import CREEP, LEAST, PATIENCE, PathFollower
 
 MOTION = Motion(
     max_speed=0.6,
@@ -170,7 +170,16 @@ def test_near_a_point_less_room_is_enough():
 
 
 def test_where_nothing_is_free_it_gives_up_at_once():
-    assert PathFollower([(1.0, 0.0)]).next(observe(Field(arena=(0.5, 0.5)), (0.25, 0.25))) is None
+    assert PathFollower([(1.0, 0.0)]).next(observe(Field(arena=(0.48, 0.48)), (0.24, 0.24))) is None
+
+
+def test_where_hardly_anything_is_free_it_creeps_along_what_is():
+    # 5 cm are free to either side along x, 2 cm along y.
+    here = observe(Field(arena=(0.54, 0.48)), (0.27, 0.24))
+    segment = PathFollower([(0.6, 1.0)]).next(here)
+    assert segment.exact
+    assert CREEP < segment.length < LEAST
+    assert here.sense([segment.heading])[0] == segment.length
 
 
 def test_it_gives_up_when_it_came_no_nearer_for_three_seconds():

@@ -19,7 +19,7 @@ from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 from fuzzyq_bullet.studies import FieldsPlan, Plan, described, planners_of
 from fuzzyq_bullet.studies.episodes import Environment, Row, as_csv, from_csv
-from fuzzyq_bullet.studies.escape import Escape
+from fuzzyq_bullet.studies.escape.study import Escape
 from fuzzyq_bullet.studies.learning.study import ComparisonPlan
 from fuzzyq_bullet.studies.learning.table import LEARNED
 from fuzzyq_bullet.studies.report.films import picked

@@ -15,6 +15,7 @@ from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.fuzzy.paper import paper_controller
 from fuzzyq_bullet.ground_truth import feasible, shortest_path
+from fuzzyq_bullet.ground_truth.distance_field import DistanceField
 from fuzzyq_bullet.learning import Policy
 from fuzzyq_bullet.planning import (
     DEFAULT_PLANNER,
@@ -34,7 +35,6 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import (
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.scenario import Scenario, Start, load_scenario, random_task, realise
 from fuzzyq_bullet.training.problems import WeightsProblem
-from fuzzyq_bullet.training.rewards import DistanceField
 from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM, TRIES, Tasks
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any, ClassVar
 
 from pydantic import Field
@@ -12,8 +12,9 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.planning.settings import RecoverySettings
 from fuzzyq_bullet.scenario import Drive, Limits
-from fuzzyq_bullet.studies.episodes import Environment
-from fuzzyq_bullet.studies.escape_table import TRAPS, shown_table, table_of
+from fuzzyq_bullet.studies.episodes import Environment, Job
+from fuzzyq_bullet.studies.escape.comparison import BESIDE, compare, shown_comparison
+from fuzzyq_bullet.studies.escape.table import TRAPS, shown_table, table_of
 from fuzzyq_bullet.studies.options import counts_of, drives_of, planner_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, PlannerDescription, Seed
 from fuzzyq_bullet.studies.registry import register_study
@@ -21,18 +22,16 @@ from fuzzyq_bullet.studies.study import (
     Findings,
     Results,
     Study,
+    Work,
     numbers,
 )
 
-VARIANTS = {
-    "no-controller": "no controller: straight to the aim at full speed",
-    "no-memory": "no memory: breakouts that are not sustained",
-}
-"""What rows call the variants of a planner, and what they are."""
+BRIEF = Limits(time=120.0, steps=100_000)
+"""Without a memory the robot goes in circles where it does not find its way soon."""
 
 
 class EscapePlan(Plan):
-    """Scatter fields, rectangles and traps, each with every drive.
+    """Scatter fields, rectangles, traps and cellular fields, each with every drive.
 
     Attributes:
         planner: The settings of the planner that is asked.
@@ -41,8 +40,9 @@ class EscapePlan(Plan):
         counts: Numbers of scattered obstacles, of radius 0.2 m.
         traps: How many traps.
         rectangles: Numbers of rectangles.
+        cellular: How many cellular fields.
         seed: Of the sweep.
-        beside: Variants of the planner that run in the same environments.
+        beside: What else runs in the same environments, with the first drive alone: ``BESIDE``.
         limits: When an episode is given up.
     """
 
@@ -52,6 +52,7 @@ class EscapePlan(Plan):
     counts: tuple[Number, ...] = (5, 25, 50, 75, 100, 125)
     traps: Number = 100
     rectangles: tuple[Number, ...] = (30, 40, 60)
+    cellular: Number = 0
     seed: Seed = 0
     beside: tuple[str, ...] = ()
     limits: Limits = PATIENT
@@ -64,18 +65,29 @@ class EscapePlan(Plan):
                     yield Environment.of(layout, count, run, self.seed)
         for run in range(self.traps):
             yield Environment.of(TRAPS[run % len(TRAPS)], None, run, self.seed)
+        for run in range(self.cellular):
+            yield Environment.of("cellular", None, run, self.seed)
 
     def schedule(self) -> Iterator[Episode]:
         """Yield all episodes, those of one environment one after the other."""
         for where in self.environments():
-            for name in (self.planner["name"], *self.beside):
-                for drive in self.drives:
-                    yield where, name, drive
+            for drive in self.drives:
+                yield where, self.planner["name"], drive
+            for name in self.beside:
+                yield where, name, self.drives[0]
+
+    def jobs(self, planners: Mapping[str, PlannerSettings]) -> list[Job]:
+        """Return all jobs; what goes in circles is given up sooner."""
+        jobs = super().jobs(planners)
+        return [replace(one, limits=BRIEF) if one.planner == "no-memory" else one for one in jobs]
 
 
 @register_study
 class Escape(Study):
     """Run a planner in random fields, traps and rectangles; print how often it finds its way.
+
+    With --beside also without its controller, without its memory, told where exits lead, and the
+    true shortest path driven: what each is worth, and how much there is to gain.
 
     May be ended at any moment: the same command goes on where it was. Writes escape.csv, a row for
     every episode, escape.json, and in records/ the runs that failed although there was a way, for
@@ -96,11 +108,14 @@ class Escape(Study):
         100, ge=0, le=100_000, description="Semicircles, arcs, U-shapes and walls, in turn."
     )
     rectangles: str = Field("30,40,60", description="Numbers of rectangles, or none.")
+    cellular: int = Field(
+        0, ge=0, le=100_000, description="Corridors of clumped pillars, with their score."
+    )
     drive: str = Field("both", description="wheels (physics), kinematic, or both.")
     planner: str = Field("improved-fuzzy", description="Planner to ask.")
     weights: str | None = Field(None, description="Its weights ω1,ω2; 1,1 where it takes any.")
     beside: bool = Field(
-        False, description="Run it without its controller, and without its memory, as well."
+        False, description="Run it without parts of it, and what knows the truth, as well."
     )
 
     def planner_set(self) -> dict[str, PlannerSettings]:
@@ -119,11 +134,14 @@ class Escape(Study):
             counts=counts_of(self.counts, "--counts"),
             traps=self.traps,
             rectangles=counts_of(self.rectangles, "--rectangles"),
+            cellular=self.cellular,
             seed=self.seed,
-            beside=tuple(VARIANTS) if beside else (),
+            beside=tuple(BESIDE) if beside else (),
         )
         if not any(True for _ in plan.environments()):
-            raise UserError("nothing to run: --counts, --traps and --rectangles all ask for none")
+            raise UserError(
+                "nothing to run: --counts, --traps, --rectangles and --cellular all ask for none"
+            )
         return plan
 
     @classmethod
@@ -136,6 +154,7 @@ class Escape(Study):
             counts=numbers(plan.counts),
             traps=plan.traps,
             rectangles=numbers(plan.rectangles),
+            cellular=plan.cellular,
             drive=plan.drives[0] if len(plan.drives) == 1 else "both",
             planner=plan.planner["name"],
             weights=None if not weights else ",".join(f"{one:g}" for one in weights),
@@ -172,17 +191,22 @@ class Escape(Study):
             for target in line.targets
             if not target.met
         ]
-        tables, beside = [shown_table(lines, named, self.seed)], {}
-        for name in swept.plan.beside:
-            variant = table_of(row for row in swept.rows if row.planner == name)
-            tables.append(shown_table(variant, f"{named}, {VARIANTS[name]}", self.seed))
-            beside[name] = [asdict(line) for line in variant]
-        told = {**told, "rows": rows, **({"beside": beside} if beside else {})}
-        return Findings(tuple(tables), told, missed=tuple(missed))
+        drive = swept.plan.drives[0]
+        driven = [row for row in swept.rows if row.drive == drive]
+        compared = compare(driven, (self.planner, *swept.plan.beside))
+        tables = (shown_table(lines, named, self.seed), shown_comparison(compared, drive))
+        told = {**told, "rows": rows, "compared": [asdict(one) for one in compared]}
+        return Findings(tables, told, missed=tuple(missed))
+
+    def work(self) -> Work:
+        """Return what does a job: a bound is driven by what knows the truth."""
+        from fuzzyq_bullet.studies.escape.bounds import work
+
+        return work
 
 
 def variants_of(settings: PlannerSettings) -> dict[str, PlannerSettings]:
-    """Return the planner without its controller, and without its memory, by what rows call them.
+    """Return what runs beside a planner, by what rows call it; the bounds have its settings.
 
     Raises:
         UserError: If it has neither.
@@ -192,4 +216,6 @@ def variants_of(settings: PlannerSettings) -> dict[str, PlannerSettings]:
     return {
         "no-controller": settings.model_copy(update={"rules": "none"}),
         "no-memory": settings.model_copy(update={"following": False}),
+        "true-exits": settings,
+        "true-path": settings,
     }

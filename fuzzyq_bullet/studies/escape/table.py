@@ -6,14 +6,23 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median
 
-from fuzzyq_bullet.scenario import Robot
+from fuzzyq_bullet.scenario import Robot, cellular_task
 from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.study import Sense, Table, cell, meets
 
 TRAPS = ("semicircle", "arc", "u-shape", "long-wall")
 """Taken in turn, each of a size and direction that its seed draws."""
-PATH_RATIOS = {25: 1.10, 50: 1.25, 125: 2.0}
+PATH_RATIOS = {25: 1.10, 50: 1.25, 125: 1.6}
 """Most that the mean path may be, in shortest paths, by the number of scattered obstacles."""
+TIME_RATIOS = {25: 1.09, 50: 1.16, 75: 1.38, 100: 1.6, 125: 2.2}
+"""Most that the mean time on wheels may be, in times of the shortest path at full speed."""
+SCORE = 0.47
+"""Least mean score in cellular fields on wheels."""
+FAMILIES = ("scatter", "traps", "rectangles", "cellular")
+
+
+CELLULAR_SPEED = cellular_task(0).robot.max_speed
+CELLULAR_GOAL = cellular_task(0).goal.radius
 
 
 @dataclass(frozen=True)
@@ -33,6 +42,7 @@ class Figures:
             at full speed; None without any.
         mean_time_ratio: The mean of the same.
         clearance: Least distance to anything in any of them (m); None when there was nothing.
+        score: Mean of ``score_of`` over those that have one; None outside of cellular fields.
     """
 
     episodes: int
@@ -45,17 +55,22 @@ class Figures:
     time_ratio: float | None
     mean_time_ratio: float | None
     clearance: float | None
+    score: float | None
 
     @classmethod
-    def of(cls, rows: Sequence[Row], speed: float) -> Figures:
-        """Return the figures of at least one row; ``speed`` is the robot's greatest (m/s)."""
+    def of(cls, rows: Sequence[Row]) -> Figures:
+        """Return the figures of at least one row."""
         feasible = [row for row in rows if row.feasible is not False]
         found = [row for row in rows if row.success]
         ways = [
-            (row.path_length_m / row.shortest_path_m, row.time_s * speed / row.shortest_path_m)
+            (
+                row.path_length_m / row.shortest_path_m,
+                row.time_s * full_speed(row) / row.shortest_path_m,
+            )
             for row in found
             if row.shortest_path_m and row.path_length_m is not None and row.time_s is not None
         ]
+        scores = [one for row in rows if (one := score_of(row)) is not None]
         clearances = [row.min_clearance_m for row in rows if row.min_clearance_m is not None]
         return cls(
             episodes=len(rows),
@@ -68,6 +83,7 @@ class Figures:
             time_ratio=median(time for _, time in ways) if ways else None,
             mean_time_ratio=fmean(time for _, time in ways) if ways else None,
             clearance=min(clearances, default=None),
+            score=fmean(scores) if scores else None,
         )
 
 
@@ -92,8 +108,8 @@ class Line:
     """One line of the table.
 
     Attributes:
-        family: ``scatter``, ``traps`` or ``rectangles``.
-        count: Number of obstacles; None for traps.
+        family: One of ``FAMILIES``.
+        count: Number of obstacles; None where there is none.
         environments: How many different ones.
         feasible: Those that have a way.
         drives: The figures for each drive.
@@ -112,29 +128,52 @@ class Line:
         return tuple(one for one in self.targets if one.drive == drive and not one.met)
 
 
-def table_of(rows: Iterable[Row], *, speed: float | None = None) -> list[Line]:
-    """Return the table: scatter fields by count, traps, rectangles by count.
+def full_speed(row: Row) -> float:
+    """Return the greatest speed (m/s) of the robot of an environment."""
+    return CELLULAR_SPEED if row.layout == "cellular" else Robot().max_speed
 
-    Args:
-        rows: Rows of one planner, in any order.
-        speed: Greatest speed of the robot (m/s); by default that of a scenario that says nothing.
+
+def score_of(row: Row) -> float | None:
+    """Return the score of the literature for a run in a cellular field.
+
+    It is success · OT / clip(time, 2·OT, 8·OT), so 0.5 at most. OT is 0.6 s for each metre of the
+    shortest path to the goal's centre: 2 m/s along a grid path, about a fifth longer.
+
+    Returns:
+        0 to 0.5; None for other environments, and where there is no way.
     """
-    full = Robot().max_speed if speed is None else speed
-    groups: dict[tuple[int, str, int], dict[str, list[Row]]] = {}
+    if row.layout != "cellular" or row.shortest_path_m is None:
+        return None
+    if not row.success or row.time_s is None:
+        return 0.0
+    optimal = 0.6 * (row.shortest_path_m + CELLULAR_GOAL)
+    return optimal / min(max(row.time_s, 2.0 * optimal), 8.0 * optimal)
+
+
+def by_family(rows: Iterable[Row]) -> dict[tuple[str, int | None], list[Row]]:
+    """Return rows by family and count: scatter by count, traps, rectangles by count, cellular."""
+    groups: dict[tuple[int, int], list[Row]] = {}
     for row in rows:
         family = "traps" if row.layout in TRAPS else row.layout
-        place = ("scatter", "traps", "rectangles").index(family)
-        group = groups.setdefault((place, family, -1 if row.count is None else row.count), {})
+        place = FAMILIES.index(family), -1 if row.count is None else row.count
+        groups.setdefault(place, []).append(row)
+    return {
+        (FAMILIES[place], None if count < 0 else count): group
+        for (place, count), group in sorted(groups.items())
+    }
+
+
+def table_of(rows: Iterable[Row]) -> list[Line]:
+    """Return the table of one planner's rows, in any order: a line for each family and count."""
+    return [_line(family, count, group) for (family, count), group in by_family(rows).items()]
+
+
+def _line(family: str, count: int | None, rows: Sequence[Row]) -> Line:
+    group: dict[str, list[Row]] = {}
+    for row in rows:
         group.setdefault(row.drive, []).append(row)
-    return [
-        _line(family, None if count < 0 else count, group, full)
-        for (_, family, count), group in sorted(groups.items())
-    ]
-
-
-def _line(family: str, count: int | None, group: dict[str, list[Row]], speed: float) -> Line:
     # Wheels first: what is measured in physics counts, the point robot stands beside it.
-    drives = {name: Figures.of(group[name], speed) for name in sorted(group, reverse=True)}
+    drives = {name: Figures.of(group[name]) for name in sorted(group, reverse=True)}
     seen = {row.place: row.feasible is not False for rows in group.values() for row in rows}
     targets: list[Target] = []
     for drive, figures in drives.items():
@@ -144,6 +183,11 @@ def _line(family: str, count: int | None, group: dict[str, list[Row]], speed: fl
         if family == "scatter" and count in PATH_RATIOS:
             bound = PATH_RATIOS[count]
             targets.append(Target("path ratio", drive, figures.path_ratio, bound, "at most"))
+        if family == "scatter" and count in TIME_RATIOS and drive == "wheels":
+            bound = TIME_RATIOS[count]
+            targets.append(Target("time ratio", drive, figures.mean_time_ratio, bound, "at most"))
+        if family == "cellular" and drive == "wheels":
+            targets.append(Target("score", drive, figures.score, SCORE, "at least"))
     return Line(family, count, len(seen), sum(seen.values()), drives, tuple(targets))
 
 
@@ -158,26 +202,44 @@ _COLUMNS: tuple[tuple[str, Callable[[Figures], float | None], str], ...] = (
 )
 
 
+def family_name(family: str, count: int | None) -> str:
+    """Return what a table calls a family."""
+    return family if count is None else f"{family} {count}"
+
+
+def _listed(bounds: dict[int, float]) -> str:
+    return ", ".join(f"{bound:g} at {count}" for count, bound in bounds.items())
+
+
 def shown_table(lines: Sequence[Line], planner: str, seed: int) -> Table:
     """Return the table, which fits into 80 columns."""
-    ratios = ", ".join(f"{bound:.2f} at {count}" for count, bound in PATH_RATIOS.items())
     rows = []
     for line in lines:
-        what = line.family if line.count is None else f"{line.family} {line.count}"
         cells = [
             "\n".join(cell(figure(one), form) for one in line.drives.values())
             for _, figure, form in _COLUMNS
         ]
         feasible = f"{line.feasible} of {line.environments}"
         verdicts = ("MISSED" if line.missed_by(drive) else "met" for drive in line.drives)
-        rows.append([what, feasible, "\n".join(line.drives), *cells, "\n".join(verdicts)])
+        rows.append(
+            [
+                family_name(line.family, line.count),
+                feasible,
+                "\n".join(line.drives),
+                *cells,
+                "\n".join(verdicts),
+            ]
+        )
     columns = ("obstacles", "feasible", "drive", *(name for name, _, _ in _COLUMNS), "targets")
     caption = (
-        f"{planner}; seed {seed}; walled 10 × 10 m, start and goal near corners at random.\n"
+        f"{planner}; seed {seed}; walled 10 × 10 m, start and goal near corners at random; "
+        "cellular: a corridor of 10 × 5 m with open sides, at 1 m/s.\n"
         "feasible: there is a way for a disc of radius 0.22 m; found: share of those that "
         "reached the goal; hits: collisions in all; path: mean over the successes of driven "
         "over shortest path; time: mean over the successes, in times of the shortest path at "
         "full speed, and its median; clear: least distance to anything (m).\n"
-        f"Targets: found 1.00, no hits, no errors; path at most {ratios} scattered obstacles."
+        f"Targets: found 1.00, no hits, no errors; among scattered obstacles path at most "
+        f"{_listed(PATH_RATIOS)}, time on wheels at most {_listed(TIME_RATIOS)}; score in cellular "
+        f"fields on wheels at least {SCORE:g}."
     )
     return Table(caption, columns, rows, left=(0, 1, 2, len(columns) - 1))

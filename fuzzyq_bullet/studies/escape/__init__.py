@@ -1,0 +1,1 @@
+"""Whether a planner finds a way wherever there is one, and what its time is made of."""
