@@ -8,7 +8,14 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.options import FILE, FOLDER, Jobs, PluginOption, ReplaceOthersOption
+from fuzzyq_bullet.cli.options import (
+    FILE,
+    FOLDER,
+    Jobs,
+    PlannerOption,
+    PluginOption,
+    ReplaceOthersOption,
+)
 from fuzzyq_bullet.errors import UserError
 
 
@@ -17,27 +24,32 @@ def figure(
         int, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper.")
     ],
     out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
+    planner: PlannerOption = None,
     plugin: PluginOption = None,
     replace: ReplaceOthersOption = False,
 ) -> None:
     """Draw a figure of the paper and print the files written.
 
     Raises:
-        UserError: If no figure has this number, or the file cannot be written, or is there and no
+        UserError: If no figure has this number, it is made of no runs and a planner is named, or
+            the file cannot be written, or is there and no
             figure of this command's.
     """
-    from fuzzyq_bullet.figures import FIGURES, MARK, drawing
+    from fuzzyq_bullet.figures import FIGURES, MARK, OF_RUNS, drawing
     from fuzzyq_bullet.files import refuse_inputs
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
 
     if number not in FIGURES:
         known = "; ".join(f"{key} ({shows})" for key, shows in sorted(FIGURES.items()))
         raise UserError(f"NUMBER: no figure {number}; there are: {known}")
-    target = out / f"figure{number}.png"
+    if planner is not None and number not in OF_RUNS:
+        raise UserError(f"--planner: figure {number} shows no run that a planner could drive")
+    target = out / f"{'-'.join(filter(None, (f'figure{number}', planner)))}.png"
     refuse_inputs([target], plugin_inputs(plugin or []))
     if not replace:
         refuse_others_file(target, MARK)
-    for path in drawing(number)(out):
+    given = {} if planner is None else {"planner": planner}
+    for path in drawing(number)(out, **given):
         typer.echo(path)
 
 

@@ -10,8 +10,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
 
-Draw: TypeAlias = Callable[[Path], list[Path]]
-"""Draws into a folder and returns the files written, the main one first."""
+Draw: TypeAlias = Callable[..., list[Path]]
+"""Draws into a folder and returns the files written, the main one first. Figures that are made of
+runs take the name of another planner, too."""
+OF_RUNS = (9, 10, 11, 12)
+"""Figures that are made of runs."""
 
 MARK = "fuzzyq figure"
 """Stands as ``Software`` in every file, so that one is known again."""

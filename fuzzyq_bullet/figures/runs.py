@@ -21,7 +21,7 @@ from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
 from fuzzyq_bullet.files import writable_folder
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.platforms import data_folder
-from fuzzyq_bullet.scenario import Scenario, load_scenario
+from fuzzyq_bullet.scenario import Scenario, load_scenario, with_options
 from fuzzyq_bullet.trajectory import Trajectory
 
 ENDS = {
@@ -71,14 +71,20 @@ class RunsFigure(NamedTuple):
     panels: tuple[Panel, ...]
     grid: Grid
 
-    def draw(self, out: Path) -> list[Path]:
+    def draw(self, out: Path, planner: str | None = None) -> list[Path]:
         """Run all panels and draw them into ``out/NAME.png``.
 
+        Args:
+            out: The folder.
+            planner: Planner that drives instead, with the same settings as far as it has them; its
+                name becomes part of the file's.
+
         Raises:
-            UserError: If the file cannot be written.
+            UserError: If the file cannot be written, or there is no such planner.
         """
-        path = writable_folder(out) / f"{self.name}.png"
-        runs = [run(scenario_of(panel)) for panel in self.panels]
+        scenarios = [with_options(scenario_of(panel), planner=planner) for panel in self.panels]
+        path = writable_folder(out) / f"{'-'.join(filter(None, (self.name, planner)))}.png"
+        runs = [run(scenario) for scenario in scenarios]
         figure = picture(self.panels, runs, self.grid)
         told = {"Software": MARK}
         save_png(figure, path, bbox_inches="tight", pad_inches=_GAP, metadata=told)
@@ -194,9 +200,11 @@ def _entitle(axes: Axes, index: int, panel: Panel, trajectory: Trajectory) -> No
 
 
 def _scale(runs: Sequence[Trajectory], grid: Grid) -> str:
-    """Say how large all this is."""
+    """Say who drove, and how large all this is."""
     sizes = {run.scenario.arena.size for run in runs}
-    parts = [f"arena {width:g} × {depth:g} m" for width, depth in sorted(sizes)]
+    planners = {run.scenario.planner.name for run in runs}
+    parts = [f"planner {', '.join(sorted(planners))}"]
+    parts += [f"arena {width:g} × {depth:g} m" for width, depth in sorted(sizes)]
     if grid.close_up is not None:
         parts.append("below: {0:g} × {0:g} m of it".format(grid.close_up[2]))
     return "; ".join(parts)

@@ -148,13 +148,13 @@ class Row(BaseModel):
         spl: Success weighted by path length; None where there is no way.
         min_clearance_m: Least distance to anything (m); None when there was nothing.
         collisions: 0 or 1.
+        digest: Hash of the exact trajectory.
+        layout: Name of the layout that drew the obstacles.
+        error: What went wrong with the episode itself; None normally.
         turning_rad: Sum of all changes of direction (rad).
         mean_jerk: Mean of |jerk| (m/s³); None in the kinematic drive.
         rules_turn: Share of the decisions near something in which the rules turn the robot; None
             for a planner without rules.
-        digest: Hash of the exact trajectory.
-        layout: Name of the layout that drew the obstacles.
-        error: What went wrong with the episode itself; None normally.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -173,12 +173,12 @@ class Row(BaseModel):
     spl: float | None = None
     min_clearance_m: float | None = None
     collisions: int | None = None
-    turning_rad: float | None = None
-    mean_jerk: float | None = None
-    rules_turn: float | None = None
     digest: str | None = None
     layout: str
     error: str | None = None
+    turning_rad: float | None = None
+    mean_jerk: float | None = None
+    rules_turn: float | None = None
 
     @property
     def place(self) -> Place:

@@ -40,6 +40,7 @@ RESULT_KEYS = [
     "min_clearance_m",
     "collisions",
     "turning_rad",
+    "mean_jerk",
     "modes",
     "rules_turn",
     "digest",

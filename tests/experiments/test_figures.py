@@ -10,8 +10,9 @@ from PIL import Image
 
 from fuzzyq_bullet.cli.report import figure
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.figures import FIGURES, drawing
+from fuzzyq_bullet.figures import FIGURES, drawing, runs
 from fuzzyq_bullet.figures.figure4 import picture, surfaces
+from fuzzyq_bullet.figures.runs import Grid, Panel, RunsFigure
 from fuzzyq_bullet.fuzzy import paper_controller
 
 if TYPE_CHECKING:
@@ -43,6 +44,28 @@ def test_the_command_draws_figure_4_and_prints_where(
 def test_the_same_figure_is_drawn_again_to_the_byte(tmp_path: Path) -> None:
     one, other = (drawing(4)(tmp_path / name)[0].read_bytes() for name in ("a", "b"))
     assert one == other
+
+
+def test_another_planner_may_drive_and_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    figure = RunsFigure("figure11", (Panel("figure-11b", "With sustained avoidance"),), Grid(1))
+    drawn: list[Figure] = []
+    monkeypatch.setattr(runs, "save_png", lambda figure, path, **told: drawn.append(figure))
+    [path] = figure.draw(tmp_path, "fuzzy-q-lambda")
+    assert path.name == "figure11-fuzzy-q-lambda.png"
+    titles = [legend.get_title().get_text() for legend in drawn[0].legends]
+    assert titles == ["planner fuzzy-q-lambda; arena 10 × 10 m"]
+
+
+def test_a_figure_without_runs_has_no_planner_and_no_figure_has_one_that_is_not_there(
+    tmp_path: Path,
+) -> None:
+    with pytest.raises(UserError, match="figure 4 shows no run that a planner could drive"):
+        figure(4, tmp_path, planner="fuzzy")
+    with pytest.raises(UserError, match="planner"):
+        figure(9, tmp_path / "new", planner="../nobody")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_picture_that_is_no_figure_of_ours_is_replaced_only_when_asked_to(tmp_path: Path) -> None:

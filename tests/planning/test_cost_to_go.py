@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csgraph
 
-from fuzzyq_bullet.planning.cost_to_go import CELL, MOST, ObstacleMap
+from fuzzyq_bullet.occupancy import OccupancyGrid
+from fuzzyq_bullet.planning.cost_to_go import CELL, MOST, TIGHT, ObstacleMap
 from tests.helpers.exploring import map_of
 
 WALL = np.array([[[1.0, -1.0], [1.0, 1.0]]])
@@ -120,3 +121,29 @@ def test_however_large_the_world_the_grid_stays_small(size, monkeypatch):
     straight = size * math.sqrt(2.0)
     assert way == pytest.approx(straight, rel=0.09)
     assert 0.2 * MOST < sizes[0] <= 1.1 * MOST
+
+
+def ring(radius, gap):
+    """Points on a circle about the origin, 0.02 m apart, with a gap so wide (m) towards +x."""
+    half = gap / 2.0 / radius
+    angles = np.arange(half, math.tau - half, 0.02 / radius)
+    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def test_through_a_gap_with_no_room_for_the_disc_a_path_costs_more():
+    def cost(gap):
+        walls = ObstacleMap()
+        walls.add(np.zeros((0, 2, 2)), ring(1.0, gap), 0.22)
+        return walls.cost_to_go((0.0, 0.0), [(2.0, 0.0)])[0]
+
+    assert cost(0.8) == pytest.approx(2.0, abs=0.3)
+    assert cost(0.2) == pytest.approx(2.0 + TIGHT, abs=0.3)
+    assert cost(0.0) == pytest.approx(2.0 + TIGHT, abs=0.3)  # the boundaries know of no wall
+
+
+def test_what_lies_within_a_radius_of_a_point_is_covered():
+    grid = OccupancyGrid.over((-1.0, -1.0), (1.0, 1.0), 0.1)
+    grid.cover(np.array([[0.23, -0.31], [5.0, 5.0]]), 0.17)
+    middles = grid.points() + 0.05
+    away = np.hypot(*np.moveaxis(middles - (0.23, -0.31), 2, 0))
+    assert (grid.free == (away > 0.17)).all()

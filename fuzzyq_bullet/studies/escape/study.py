@@ -97,7 +97,7 @@ class Escape(Study):
     name: ClassVar[str] = "escape"
     title: ClassVar[str] = "Out of dead ends"
     kinds: ClassVar[Mapping[str, type[Plan]]] = {"escape": EscapePlan}
-    width: ClassVar[int] = 80
+    width: ClassVar[int] = 100
     kept: ClassVar[bool] = True
 
     runs: int = Field(50, ge=1, le=100_000, description="Environments for every count.")
