@@ -70,10 +70,10 @@ def features_of(situation: Situation) -> Features:
 POLICY_SPEC = PolicySpec("fuzzy-q-lambda", STATE_NAMES, ACTION_NAMES, "linear-q-lambda")
 """What its policies look like."""
 
-SHORTEST = 1.0 * STEP_UNIT
-"""How much nearer to the goal the robot comes with an option at least (m)."""
-LONGEST = 5.0 * STEP_UNIT
-"""After coming so much nearer it has passed everything that its lines could show before (m)."""
+SHORTEST = 1.0
+"""How much nearer to the goal the robot comes with an option at least (S_p)."""
+LONGEST = 5.0
+"""After coming so much nearer it has passed everything that its lines could show before (S_p)."""
 
 
 class OptionTermination:
@@ -91,16 +91,17 @@ class OptionTermination:
         self._began = math.inf
         self._clear = False
 
-    def ends(self, to_goal: float, mode: Mode, *, clear: bool) -> bool:
+    def ends(self, to_goal: float, mode: Mode, *, clear: bool, unit: float = STEP_UNIT) -> bool:
         """Return whether the option ends here, and the next begins. Call it once a decision.
 
         Args:
             to_goal: Distance to the goal (m).
             mode: Of the aim: an option ends only where that is the goal.
             clear: Whether nothing is seen on the line to the goal.
+            unit: S_p (m).
         """
         nearest, self._nearest = self._nearest, min(self._nearest, to_goal)
-        least = SHORTEST if clear != self._clear else LONGEST
+        least = unit * (SHORTEST if clear != self._clear else LONGEST)
         if mode != "routine" or to_goal > nearest or to_goal > self._began - least:
             return False
         self._began, self._clear = to_goal, clear
@@ -124,7 +125,8 @@ class FuzzyQLambdaPlanner(ImprovedFuzzyBase):
     def decide(self, observation: Observation, /) -> Decision:
         """Return the decision with the weights that were best where the option began (Step 10)."""
         situation = self.sense(observation)
-        if self._option.ends(situation.to_goal, self.mode, clear=situation.clear):
+        seen = situation
+        if self._option.ends(seen.to_goal, self.mode, clear=seen.clear, unit=seen.unit):
             self._chosen = self._best(situation)
         return self.act(observation, situation, self._chosen[:2], self._chosen.breakout_at)
 

@@ -10,6 +10,9 @@ from fuzzyq_bullet.learning import Policy, PolicySpec, load_policy
 from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.platforms import asset
 
+SHIPPED = ("q-learning", "q-lambda", "fuzzy-q-lambda")
+"""Planners for which a policy is shipped."""
+
 
 def shipped(planner: str) -> Path:
     """Return the path of the policy that is shipped for a planner."""
@@ -31,11 +34,11 @@ def policy_of(settings: PolicySettings, expected: PolicySpec) -> Policy:
         state = path.stat()
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
-        remedy = (
-            "install fuzzyq_bullet again, or make policies in its checkout"
-            if settings.policy is None
-            else f"make one with fuzzyq train {settings.name}"
-        )
+        remedy = f"make one with fuzzyq train {settings.name}"
+        if settings.policy is None and settings.name in SHIPPED:
+            remedy = "install fuzzyq_bullet again, or make policies in its checkout"
+        elif settings.policy is None:
+            remedy += ", and name it as planner.policy; none is shipped for this planner"
         raise UserError(
             f"{path}: the policy of {settings.name} cannot be read: {why}; {remedy}"
         ) from error

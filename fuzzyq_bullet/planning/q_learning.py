@@ -20,8 +20,8 @@ from fuzzyq_bullet.planning.settings import PolicySettings
 
 LINE_ANGLE = math.radians(45.0)
 """Angle of the left and right lines from the middle one (rad), as in the fuzzy planners."""
-BORDERS = (1.0 * STEP_UNIT, 2.0 * STEP_UNIT, 4.0 * STEP_UNIT)
-"""Free lengths (m) at which the next level begins. The first is one step: where less is free, a
+BORDERS = (1.0, 2.0, 4.0)
+"""Free lengths (S_p) at which the next level begins. The first is one step: where less is free, a
 step along the line hits something."""
 LEVELS = ("blocked", "near", "middling", "free")
 LINES = ("left", "ahead", "right")
@@ -29,9 +29,6 @@ STATE_NAMES = tuple(
     ", ".join(f"{line} {level}" for line, level in zip(LINES, levels, strict=True))
     for levels in product(LEVELS, repeat=len(LINES))
 )
-
-STEP = STEP_UNIT
-"""Length of every step (m) but the last one, to the goal."""
 
 
 class Heading(NamedTuple):
@@ -70,6 +67,7 @@ class Sensed(NamedTuple):
         lines: World headings of the left, middle and right lines (rad), shape (3,).
         lengths: Their free lengths (m), shape (3,).
         state: Number of the state.
+        unit: S_p, the length of every step but the last one, to the goal (m).
     """
 
     bearing: float
@@ -77,17 +75,20 @@ class Sensed(NamedTuple):
     lines: tuple[float, float, float]
     lengths: Sequence[float]
     state: int
+    unit: float = STEP_UNIT
 
 
-def state_of(lengths: Sequence[float]) -> int:
+def state_of(lengths: Sequence[float], unit: float = STEP_UNIT) -> int:
     """Return the number of a state.
 
     Args:
         lengths: Free lengths of the left, middle and right lines (m), shape (3,).
+        unit: S_p (m).
     """
+    borders = [border * unit for border in BORDERS]
     state = 0
     for length in lengths:
-        state = len(LEVELS) * state + bisect_right(BORDERS, length)
+        state = len(LEVELS) * state + bisect_right(borders, length)
     return state
 
 
@@ -100,14 +101,15 @@ def sense(observation: Observation) -> Sensed:
     lines = (bearing + LINE_ANGLE, bearing, bearing - LINE_ANGLE)
     left, middle, right = lengths = observation.sense(lines)
     counted = (left, math.inf if middle >= to_goal else middle, right)
-    return Sensed(bearing, to_goal, lines, lengths, state_of(counted))
+    unit = observation.unit
+    return Sensed(bearing, to_goal, lines, lengths, state_of(counted, unit), unit)
 
 
 def act(sensed: Sensed, action: int) -> Decision:
     """Return the step of an action. No safety filter follows."""
     return Decision(
         heading=sensed.bearing + ACTIONS[action].turn,
-        step=min(STEP, sensed.to_goal),
+        step=min(sensed.unit, sensed.to_goal),
         lines=sensed.lines,
         lengths=sensed.lengths,
     )

@@ -193,4 +193,5 @@ class WeightsProblem:
         """Observe where the robot is now, and return whether the option ends here."""
         self._observation = self._episode.observe()
         self._situation = seen = self._planner.sense(self._observation)
-        return self._option.ends(seen.to_goal, self._planner.mode, clear=seen.clear)
+        mode = self._planner.mode
+        return self._option.ends(seen.to_goal, mode, clear=seen.clear, unit=seen.unit)

@@ -95,7 +95,7 @@ def test_any_three_lengths_are_a_state_which_is_named_after_them(
     levels = []
     for length in lengths:
         names = ("blocked", "near", "middling", "free")
-        levels.append(names[sum(length >= border for border in BORDERS)])
+        levels.append(names[sum(length >= border for border in np.multiply(BORDERS, STEP_UNIT))])
     said = "left {}, ahead {}, right {}".format(*levels)
     assert STATE_NAMES[state_of(lengths)] == said
 
@@ -107,10 +107,12 @@ def test_every_state_is_met_by_some_lengths() -> None:
 
 
 def test_a_level_begins_at_its_border_and_the_first_border_is_a_step() -> None:
-    assert BORDERS[0] == STEP_UNIT
-    for number, border in enumerate(BORDERS):
-        below, at = (state_of((0.0, 0.0, x)) for x in (math.nextafter(border, 0.0), border))
-        assert (below, at) == (number, number + 1)
+    assert BORDERS[0] == 1.0
+    for unit in (STEP_UNIT, 0.35):  # of the default robot, and of a larger one
+        for number, border in enumerate(BORDERS):
+            length = border * unit
+            below, at = (state_of((0, 0, x), unit) for x in (math.nextafter(length, 0.0), length))
+            assert (below, at) == (number, number + 1)
 
 
 def test_states_and_headings_are_mirrored_in_the_line_to_the_goal() -> None:
