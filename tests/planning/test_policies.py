@@ -19,13 +19,13 @@ SPEC = POLICY_SPECS["q-learning"]
 
 
 def test_a_planner_without_a_shipped_policy_is_told_to_learn_one_and_to_name_it() -> None:
-    with pytest.raises(UserError, match="train mine, and name it as planner.policy; none is ship"):
+    with pytest.raises(UserError, match=r"train mine, and name it as planner.policy; none is ship"):
         policy_of(PolicySettings(name="mine"), SPEC)
 
 
 def test_a_named_policy_that_is_not_there_is_to_be_made(tmp_path: Path) -> None:
     settings = PolicySettings(name="q-learning", policy=str(tmp_path / "none.json"))
-    with pytest.raises(UserError, match="none.json: .* make one with fuzzyq train q-learning$"):
+    with pytest.raises(UserError, match=r"none.json: .* make one with fuzzyq train q-learning$"):
         policy_of(settings, SPEC)
 
 
