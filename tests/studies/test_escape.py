@@ -242,8 +242,8 @@ def test_what_knows_the_truth_is_told_beside_a_planner(tmp_path: Path, inside: C
     told = json.loads(done.stdout)
     paths = {one["planner"]: one["path_ratio"] for one in told["compared"]}
     assert set(paths) == {"improved-fuzzy", *BESIDE}
-    assert 1.0 <= paths["true-path"] <= min(paths["improved-fuzzy"], paths["true-exits"])
-    assert paths["true-exits"] <= paths["improved-fuzzy"]
+    # What knows more drives less: here at least, where the planner goes wrong once.
+    assert 1.0 <= paths["true-path"] < paths["true-exits"] < paths["improved-fuzzy"]
     assert len(told["rows"]) == 1  # the planner's own, as without --beside
     with pytest.raises(UserError, match="fuzzy has no controller and no memory to leave out"):
         inside(*command, "--planner", "fuzzy", "--out", tmp_path / "other")
