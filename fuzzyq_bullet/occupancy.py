@@ -60,7 +60,7 @@ class OccupancyGrid:
 
         Args:
             points: Points on the grid (m), shape (K, 2).
-            radius: More than half a cell.
+            radius: At least 0 (m).
         """
         most = math.ceil(radius / self.cell) + 1
         around = np.arange(-most, most + 1)

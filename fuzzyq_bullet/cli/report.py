@@ -31,11 +31,10 @@ def figure(
     """Draw a figure of the paper and print the files written.
 
     Raises:
-        UserError: If no figure has this number, it is made of no runs and a planner is named, or
-            the file cannot be written, or is there and no
-            figure of this command's.
+        UserError: If no figure has this number, or a planner is named for one that is made of no
+            runs; if the file cannot be written, or is there and no figure of this command's.
     """
-    from fuzzyq_bullet.figures import FIGURES, MARK, OF_RUNS, drawing
+    from fuzzyq_bullet.figures import FIGURES, MARK, OF_RUNS, drawing, file_name
     from fuzzyq_bullet.files import refuse_inputs
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
 
@@ -44,12 +43,11 @@ def figure(
         raise UserError(f"NUMBER: no figure {number}; there are: {known}")
     if planner is not None and number not in OF_RUNS:
         raise UserError(f"--planner: figure {number} shows no run that a planner could drive")
-    target = out / f"{'-'.join(filter(None, (f'figure{number}', planner)))}.png"
+    target = out / file_name(f"figure{number}", planner)
     refuse_inputs([target], plugin_inputs(plugin or []))
     if not replace:
         refuse_others_file(target, MARK)
-    given = {} if planner is None else {"planner": planner}
-    for path in drawing(number)(out, **given):
+    for path in drawing(number, planner)(out):
         typer.echo(path)
 
 

@@ -7,12 +7,12 @@ or, if it is made of runs, an entry in ``runs``.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
-Draw: TypeAlias = Callable[..., list[Path]]
-"""Draws into a folder and returns the files written, the main one first. Figures that are made of
-runs take the name of another planner, too."""
+Draw: TypeAlias = Callable[[Path], list[Path]]
+"""Draws into a folder and returns the files written, the main one first."""
 OF_RUNS = (9, 10, 11, 12)
 """Figures that are made of runs."""
 
@@ -28,8 +28,17 @@ FIGURES = {
 """What each figure shows, in a few words."""
 
 
-def drawing(number: int) -> Draw:
+def file_name(name: str, planner: str | None = None) -> str:
+    """Return what the file of a figure is called, with the planner that drives instead, if any."""
+    return f"{name}.png" if planner is None else f"{name}-{planner}.png"
+
+
+def drawing(number: int, planner: str | None = None) -> Draw:
     """Return the function that draws a figure; only now is its module imported.
+
+    Args:
+        number: Of the figure.
+        planner: Planner that drives instead; only for those ``OF_RUNS``.
 
     Raises:
         KeyError: If no figure has this number.
@@ -40,4 +49,4 @@ def drawing(number: int) -> Draw:
         return figure4.draw
     from fuzzyq_bullet.figures import runs
 
-    return runs.FIGURES[number].draw
+    return partial(runs.FIGURES[number].draw, planner=planner)

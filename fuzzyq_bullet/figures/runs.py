@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from fuzzyq_bullet.episode import run
-from fuzzyq_bullet.figures import MARK
+from fuzzyq_bullet.figures import MARK, file_name
 from fuzzyq_bullet.figures.style import INK, save_png
 from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
 from fuzzyq_bullet.files import writable_folder
@@ -83,7 +83,7 @@ class RunsFigure(NamedTuple):
             UserError: If the file cannot be written, or there is no such planner.
         """
         scenarios = [with_options(scenario_of(panel), planner=planner) for panel in self.panels]
-        path = writable_folder(out) / f"{'-'.join(filter(None, (self.name, planner)))}.png"
+        path = writable_folder(out) / file_name(self.name, planner)
         runs = [run(scenario) for scenario in scenarios]
         figure = picture(self.panels, runs, self.grid)
         told = {"Software": MARK}

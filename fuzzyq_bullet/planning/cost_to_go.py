@@ -100,7 +100,8 @@ class ObstacleMap:
         grid = OccupancyGrid.over(low, high, cell)
         x1, y1, x2, y2 = self._ends
         grid.free[grid.cells(x1 + (x2 - x1) * _ALONG, y1 + (y2 - y1) * _ALONG)] = False
-        # A cell is taken for free if the disc may be anywhere in its middle half.
+        # Half a cell less than the disc: a gap that is wide enough hardly ever closes only because
+        # of where the cells lie. Cells as wide as the disc could tell nothing.
         if self._radius > cell:
             grid.cover(hits * GRAIN, self._radius - cell / 2.0)
         return grid

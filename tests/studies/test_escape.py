@@ -1,4 +1,4 @@
-"""The table of ``fuzzyq bench escape`` is plain arithmetic over rows made by hand."""
+"""``fuzzyq bench escape``: tables are arithmetic over rows made by hand; bounds know more."""
 
 from __future__ import annotations
 

@@ -66,6 +66,7 @@ class ShortestPathDriver:
             seen = np.flatnonzero(free >= lengths)
             if seen.size:
                 break
+        # Where nothing of it is in sight from here, the robot turns on until something is.
         chosen = int(seen[-1]) if seen.size else 0
         step = LONGEST_STRIDE * observation.unit
         if observation.motion is None:

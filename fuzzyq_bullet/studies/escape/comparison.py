@@ -131,6 +131,16 @@ _COLUMNS: tuple[tuple[str, Callable[[Contender], object], str], ...] = (
 )
 
 
+_MEANINGS = {
+    "of its time": "in times of the planner's in the environments that both crossed [95 %]",
+    "jerk": "mean of |jerk| (m/s³)",
+    "turning": "changes of direction (rad/m)",
+    "rules": "share of the decisions near something in which the rules turn the robot",
+    "score": "success · OT / clip(time, 2·OT, 8·OT), at most 0.5",
+}
+"""What the columns mean that the table above does not have."""
+
+
 def shown_comparison(contenders: Sequence[Contender], drive: str) -> Table:
     """Return the table; columns of which nothing is known are left out."""
     columns = [
@@ -144,18 +154,9 @@ def shown_comparison(contenders: Sequence[Contender], drive: str) -> Table:
         some = [one for one in contenders if one.family == family]
         cells = ["\n".join(cell(figure(one), form) for one in some) for _, figure, form in columns]
         rows.append([family, "\n".join(one.planner for one in some), *cells])
-    beside = [
-        f"{name}: {BESIDE[name]}" for name in BESIDE if name in {one.planner for one in contenders}
-    ]
+    shown = {one.planner for one in contenders} | {name for name, _, _ in columns}
     notes = [
-        *beside,
-        "of its time: in times of the planner's in the environments that both crossed [95 %]",
-        "jerk: mean of |jerk| (m/s³)",
-        "turning: changes of direction (rad/m)",
-        "rules: share of the decisions near something in which the rules turn the robot",
-        "score: success · OT / clip(time, 2·OT, 8·OT), at most 0.5",
+        f"{name}: {meaning}" for name, meaning in (BESIDE | _MEANINGS).items() if name in shown
     ]
-    shown = {name for name, _, _ in columns}
-    notes = [note for note in notes if note.split(":")[0] in shown | set(BESIDE)]
     caption = f"How it drives, {drive}. " + "; ".join(notes) + "."
     return Table(caption, ("obstacles", "who", *(name for name, _, _ in columns)), rows, (0, 1))

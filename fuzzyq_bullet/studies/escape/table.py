@@ -19,10 +19,11 @@ TIME_RATIOS = {25: 1.09, 50: 1.16, 75: 1.38, 100: 1.6, 125: 2.2}
 SCORE = 0.47
 """Least mean score in cellular fields on wheels."""
 FAMILIES = ("scatter", "traps", "rectangles", "cellular")
-
-
+"""Kinds of environments, in the order of the table."""
 CELLULAR_SPEED = cellular_task(0).robot.max_speed
+"""Greatest speed of the robot in cellular fields (m/s)."""
 CELLULAR_GOAL = cellular_task(0).goal.radius
+"""Radius of their goal (m)."""
 
 
 @dataclass(frozen=True)
