@@ -26,11 +26,12 @@ SUITABLE := import sys, venv, ensurepip; sys.exit(sys.implementation.name != "cp
 	or not (3, 10) <= sys.version_info[:2] <= (3, 13))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint format policies lock clean
+.PHONY: help setup demo test test-all lint format policies lock clean
 
 help:
 	@echo 'make demo    drive a scenario and film it: $(OUT)/mixed.mp4'
 	@echo 'make test    run the tests (some of them: make test ARGS="-k video")'
+	@echo 'make test-all  run those too that take long: kills, hangs, films, wheels, other Pythons'
 	@echo 'make lint    check style and types'
 	@echo 'make format  put the style right where that can be done without thought'
 	@echo 'make setup   only install; all of the above do so first where it is needed'
@@ -46,6 +47,9 @@ demo: $(READY)
 
 test: $(READY)
 	@$(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
+
+test-all:
+	@$(MAKE) --no-print-directory test ARGS='-m "slow or not slow" $(ARGS)'
 
 lint: $(READY)
 	@$(BIN)/ruff check .

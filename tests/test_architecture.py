@@ -60,6 +60,7 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
     TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", ["fuzzyq_bullet", "tests", "examples"])
 def test_no_private_name_of_another_module_is_used(folder: str) -> None:
     used = [

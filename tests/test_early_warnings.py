@@ -15,8 +15,6 @@ from fuzzyq_bullet.scenario import bundled_scenarios, load_scenario, realise
 from fuzzyq_bullet.scenario.files import find_scenario
 from tests.helpers.commands import Call
 
-pytestmark = pytest.mark.slow
-
 HEAD = "name: doubtful\nstart: {position: [1.0, 5.0]}\ngoal: {position: [9.0, 5.0]}\n"
 WALL = "obstacles:\n  - {shape: box, position: [5.0, 5.0], size: [0.2, 10.0]}\n"
 

@@ -33,8 +33,6 @@ from fuzzyq_bullet.scenario import (
 )
 from fuzzyq_bullet.trajectory import Trajectory
 
-pytestmark = pytest.mark.slow
-
 FAST = ImprovedFuzzySettings(weights=(1.0, 1.0))
 
 
@@ -106,6 +104,7 @@ def test_it_decides_several_times_a_second(crossing):
     assert np.diff(taken).max() <= 0.3 + 1e-9
 
 
+@pytest.mark.slow
 def test_it_never_outruns_its_braking_distance():
     field = scenario(
         arena=Arena(size=(10.0, 10.0)),
@@ -120,6 +119,7 @@ def test_it_never_outruns_its_braking_distance():
         assert (braking <= ahead_of(trajectory) + 0.005).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 @pytest.mark.parametrize("weight", [0.5, 1.0])
 def test_the_guarded_planner_touches_nothing_even_where_it_gets_stuck(drive, weight):
@@ -169,6 +169,7 @@ def test_a_touch_is_noticed_at_once_from_wherever_the_robot_came(drive, away):
     assert abs(trajectory.ticks.clearance[-1]) < 0.003
 
 
+@pytest.mark.slow
 def test_whatever_the_twists_the_robot_is_never_inside_of_anything_unnoticed():
     # Wild twists among posts and boxes, from one contact to the next.
     rng = np.random.default_rng(3)
@@ -352,6 +353,7 @@ def test_the_same_run_has_the_same_digest_and_another_seed_another(drive):
     assert run(with_options(task, seed=5)).digest() != first
 
 
+@pytest.mark.slow
 def test_a_world_used_before_gives_the_same_run():
     task = realise(scenario(obstacles=(cylinder(2.5, 2.6),)))
     with World(task.obstacles, task.arena) as world:
@@ -372,6 +374,7 @@ def test_a_scenario_that_cannot_be_is_refused_before_anything_runs():
         run(scenario(obstacles=(cylinder(0.5, 2.5),)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["open-field", "sparse", "paper-50", "boxes", "mixed"])
 def test_the_bundled_scenarios_keep_what_they_expect(name):
     task = load_scenario(name)

@@ -118,6 +118,7 @@ def test_clearance_of_many_points_does_not_depend_on_how_they_are_cut_up(monkeyp
     np.testing.assert_array_equal(field.clearance(points), whole)
 
 
+@pytest.mark.slow
 @given(
     st.lists(cylinder, max_size=4),
     st.lists(box, max_size=4),
@@ -143,6 +144,7 @@ def test_free_distance_ends_exactly_at_the_first_contact(
         assert abs(gaps[-1]) < 1e-9
 
 
+@pytest.mark.slow
 @given(
     st.lists(cylinder, max_size=3),
     st.lists(box, max_size=3),

@@ -17,7 +17,7 @@ from fuzzyq_bullet.outputs import run_name
 from fuzzyq_bullet.platforms import asset
 from tests.helpers.commands import FUZZYQ, SHORT, Call
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("in_this_process")]
+pytestmark = pytest.mark.usefixtures("in_this_process")
 
 GIVEN = "would be replaced, but is an input of this command"
 
@@ -207,6 +207,7 @@ def test_a_replay_elsewhere_keeps_the_film_of_another_run(
     assert (tmp_path / "short.mp4").read_text() == "mine"
 
 
+@pytest.mark.slow
 def test_a_check_keeps_the_record_of_another_run_and_its_verdict(
     inside: Call, short_here: Path, tmp_path: Path
 ) -> None:
@@ -222,6 +223,7 @@ def test_a_check_keeps_the_record_of_another_run_and_its_verdict(
     assert (out / "short.npz").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_finished_policy_is_replaced_by_the_same_training_alone(
     inside: Call, short_here: Path, tmp_path: Path
 ) -> None:
@@ -248,6 +250,7 @@ def test_a_picture_that_no_training_has_drawn_stays(inside: Call, tmp_path: Path
 # Two at once
 
 
+@pytest.mark.slow
 def test_two_checks_in_one_folder_both_have_their_films(short_here: Path, tmp_path: Path) -> None:
     short_here.write_text(SHORT.replace("[1.4, 0.7]", "[1.0, 0.6]"))
     command = [FUZZYQ, "check", str(short_here), "--video", "all", "--out", str(tmp_path / "films")]

@@ -28,8 +28,6 @@ from fuzzyq_bullet import (
     with_options,
 )
 
-pytestmark = pytest.mark.slow
-
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -143,6 +141,7 @@ def elsewhere(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_the_wheel_holds_the_data_and_nothing_of_the_checkout_besides(built: Path) -> None:
     (wheel,) = built.glob("*.whl")
     names = set(zipfile.ZipFile(wheel).namelist())
@@ -161,6 +160,7 @@ def test_the_wheel_holds_the_data_and_nothing_of_the_checkout_besides(built: Pat
     assert not any(name.startswith((".venv", "out", ".git/")) for name in inside)
 
 
+@pytest.mark.slow
 def test_an_installed_package_runs_away_from_the_checkout(elsewhere: Path, tmp_path: Path) -> None:
     def call(*args: str) -> str:
         command = [str(elsewhere / "bin" / args[0]), *args[1:]]
@@ -245,6 +245,7 @@ def test_what_python_users_may_do_wrong_is_one_clear_error(tmp_path: Path) -> No
     assert parse_scenario(dump_scenario(odd)) == odd
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ending", "magic"), [(".gif", b"GIF89a"), (".webp", b"RIFF")])
 def test_an_animated_picture_is_what_its_name_says(
     ending: str, magic: bytes, filmed: Path, tmp_path: Path

@@ -14,8 +14,6 @@ import pytest
 
 from tests.helpers.commands import SHORT
 
-pytestmark = pytest.mark.slow
-
 CRASH = """\
 name: crash
 arena: {size: [4.0, 4.0]}
@@ -101,6 +99,7 @@ def ran(project: Path) -> Done:
     return pytest_in(project, "-n", "2", "--junitxml=junit.xml", "-rA")
 
 
+@pytest.mark.slow
 def test_scenarios_are_tests_like_others_with_two_workers(ran: Done, project: Path) -> None:
     assert ran.returncode == 1, ran.stdout + ran.stderr
     assert "1 failed, 4 passed" in ran.stdout
@@ -123,6 +122,7 @@ def test_a_failure_is_explained_without_a_traceback(ran: Done) -> None:
     assert "Traceback" not in ran.stdout + ran.stderr
 
 
+@pytest.mark.slow
 def test_the_last_failures_are_known_and_names_choose(ran: Done, project: Path) -> None:
     again = pytest_in(project, "--lf", "-n", "0", "--collect-only", "-q")
     assert "crash.scenario.yaml::crash" in again.stdout
@@ -151,6 +151,7 @@ register_planner("configured", Settings, lambda settings, rng: Ahead())
 """
 
 
+@pytest.mark.slow
 def test_a_test_by_hand_knows_the_planners_of_the_configuration(tmp_path: Path) -> None:
     (tmp_path / "pytest.ini").write_text("[pytest]\nfuzzyq_plugins = planners/own.py\n")
     (tmp_path / "planners").mkdir()
@@ -165,6 +166,7 @@ def test_a_test_by_hand_knows_the_planners_of_the_configuration(tmp_path: Path) 
     assert "1 passed" in done.stdout, done.stdout
 
 
+@pytest.mark.slow
 def test_a_scenario_that_is_no_file_is_a_failure_and_not_passed_over(tmp_path: Path) -> None:
     (tmp_path / "dead.scenario.yaml").symlink_to("nowhere")
     (tmp_path / "loop.scenario.yaml").symlink_to("loop.scenario.yaml")

@@ -11,8 +11,6 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.slow
-
 ROOT = Path(__file__).resolve().parent.parent
 LOCK = ROOT / "requirements.lock"
 MINORS = (10, 11, 12, 13)
@@ -67,6 +65,7 @@ def digests(python: str | Path) -> list[str]:
     return done.stdout.split()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not OTHERS, reason="there is one interpreter alone")
 def test_all_pythons_give_the_same_digests() -> None:
     here = digests(sys.executable)

@@ -24,8 +24,6 @@ from fuzzyq_bullet import Scenario, Trajectory, load_scenario, run, with_options
 from fuzzyq_bullet.cli import app
 from fuzzyq_bullet.scenario import bundled_scenarios, random_task
 
-pytestmark = pytest.mark.slow
-
 KNOWN = Path(__file__).with_name("unchanged.json")
 SAME_SINES = (sys.platform, platform.machine()) == ("linux", "x86_64")
 KINDS = [
@@ -83,6 +81,7 @@ CASES: dict[str, Callable[[], str]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not SAME_SINES, reason="sines differ elsewhere")
 @pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("case", [case for case in CASES if not case.startswith("figure-")])

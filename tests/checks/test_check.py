@@ -27,8 +27,6 @@ from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.workers import WorkerPool
 from tests.helpers.commands import Call
 
-pytestmark = pytest.mark.slow
-
 PLANNERS = '''\
 """What breaks robots, for tests: each by the name of a planner."""
 
@@ -166,6 +164,7 @@ def verdicts(checked: subprocess.CompletedProcess[str]) -> dict[str, Verdict]:
     return {one["name"]: Verdict.model_validate(one) for one in told}
 
 
+@pytest.mark.slow
 def test_what_is_sound_passes_beside_all_that_is_not(verdicts: dict[str, Verdict]) -> None:
     assert {name for name, one in verdicts.items() if one.status == "passed"} == {"good", "clear"}
 
@@ -248,6 +247,7 @@ def test_the_printed_command_drives_the_same_again(
     assert (record.scenario.planner.name, record.digest()) == ("bad", then.digest)
 
 
+@pytest.mark.slow
 def test_a_hang_is_cut_and_the_next_goes_on(folder: Path) -> None:
     (folder / "hang.yaml").write_text(
         gate("good").replace("improved-fuzzy, weights: [1.0, 1.0]", "bad, how: hang")
@@ -263,6 +263,7 @@ def test_a_hang_is_cut_and_the_next_goes_on(folder: Path) -> None:
     assert (done[1].status, done[1].record) == ("failed", record)
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_while_it_starts_is_replaced(folder: Path, tmp_path: Path) -> None:
     dying = tmp_path / "dying.py"
     dying.write_text(
@@ -384,6 +385,7 @@ def test_a_bundled_scenario_is_not_recorded_into_the_installation(
     assert not (data_folder("scenarios") / "check-record.json").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("in_this_process")
 def test_repeats_have_seeds_of_their_own_and_a_change_of_behaviour_is_told(
     inside: Call, folder: Path, tmp_path: Path

@@ -24,8 +24,6 @@ from fuzzyq_bullet.scenario import Expect, parse_scenario
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from tests.helpers.commands import FUZZYQ, Call
 
-pytestmark = pytest.mark.slow
-
 PLUGIN = Path(__file__).with_name("planners_gone_wrong.py")
 
 WRONG = """\
@@ -108,6 +106,7 @@ def checked_all(fuzzyq: Call, tmp_path_factory: pytest.TempPathFactory) -> dict[
     return {one["name"]: one for one in told["scenarios"]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [*WAYS, *PROCESSES])
 def test_a_check_fails_what_a_planner_does_wrong_and_says_so(
     how: str, checked_all: dict[str, dict]
@@ -121,6 +120,7 @@ def test_a_check_fails_what_a_planner_does_wrong_and_says_so(
         assert f"{PLUGIN}:" in verdict["why"][0] or how == "built-none"
 
 
+@pytest.mark.slow
 def test_the_others_go_on(checked_all: dict[str, dict]) -> None:
     assert checked_all["well"]["status"] == "passed"
 
@@ -239,6 +239,7 @@ def test_what_a_plugin_does_at_the_end_changes_no_verdict(
 FOR_EVER = "threading.Event().wait"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "plugin",
     [f"threading.Thread(target={FOR_EVER}).start()", f"atexit.register({FOR_EVER})"],
@@ -255,6 +256,7 @@ def test_a_plugin_that_never_ends_keeps_no_verdict(
     assert (wrong.returncode, wrong.stderr[:6]) == (2, "error:")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="Windows has other signals")
 def test_an_interrupt_reaches_a_command_with_plugins(tmp_path: Path) -> None:
     (tmp_path / "p.py").write_text("import time\nprint('loading', flush=True)\ntime.sleep(60)\n")

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     import subprocess
     from collections.abc import Callable
 
-pytestmark = pytest.mark.slow
-
 
 def told(done: subprocess.CompletedProcess[str]) -> str:
     """Return the one line that a mistake is answered with."""
@@ -71,6 +69,7 @@ AS_A_PROCESS = (("rnu",), ("run", "mixd"))
 """One that the parser finds and one that a command finds."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("args", USAGE, ids=" ".join)
 def test_a_mistake_on_the_command_line(
     args: tuple[str, ...], fuzzyq: Call, inside: Call, tmp_path: Path
@@ -204,6 +203,7 @@ def limited(size: int) -> Callable[[], None]:
     return limit
 
 
+@pytest.mark.slow
 def test_no_room_for_the_record_leaves_nothing(
     installed: Call, short: Path, tmp_path: Path
 ) -> None:
@@ -212,6 +212,7 @@ def test_no_room_for_the_record_leaves_nothing(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_no_room_for_anything_is_told_in_one_line_too(
     installed: Call, short: Path, tmp_path: Path
 ) -> None:
@@ -219,6 +220,7 @@ def test_no_room_for_anything_is_told_in_one_line_too(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_no_room_for_the_video_leaves_the_older_one(
     installed: Call, filmed: Path, tmp_path: Path
 ) -> None:
@@ -307,6 +309,7 @@ def test_nothing_in_a_record_is_executed(filmed: Path, tmp_path: Path) -> None:
     assert not trap.exists()
 
 
+@pytest.mark.slow
 def test_a_record_that_unpacks_to_gigabytes_is_refused_unread(tmp_path: Path) -> None:
     path = tmp_path / "bomb.npz"
     header = io.BytesIO()
@@ -394,6 +397,7 @@ def test_a_scenario_inside_a_record_is_held_to_the_same_rules(filmed: Path, tmp_
         assert f"scenario.{word}" in refusal(path)
 
 
+@pytest.mark.slow
 def test_an_explanation_may_be_odd_but_not_absurd(
     inside: Call, filmed: Path, tmp_path: Path
 ) -> None:

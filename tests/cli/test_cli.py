@@ -23,8 +23,6 @@ from fuzzyq_bullet.metrics import collision_text
 from fuzzyq_bullet.trajectory import Collision, Trajectory
 from tests.helpers.commands import FUZZYQ, Call
 
-pytestmark = pytest.mark.slow
-
 RESULT_KEYS = [
     "scenario",
     "planner",
@@ -48,6 +46,7 @@ RESULT_KEYS = [
 ]
 
 
+@pytest.mark.slow
 def test_a_run_writes_its_video_its_record_and_its_result_and_nothing_else(filmed: Path) -> None:
     written = {path.name for path in filmed.iterdir()} - {"stdout", "stderr"}
     assert written == {"short.mp4", "short.npz", "short.json"}
@@ -71,6 +70,7 @@ def test_the_summary_goes_to_stderr_a_line_for_the_run_and_one_for_each_file(fil
     assert files == [f"  {filmed / 'short'}{ending}" for ending in (".mp4", ".npz", ".json")]
 
 
+@pytest.mark.slow
 def test_the_same_scenario_planner_and_seed_give_the_same_digest_in_another_process(
     installed: Call, short: Path, filmed: Path, tmp_path: Path
 ) -> None:
@@ -79,6 +79,7 @@ def test_the_same_scenario_planner_and_seed_give_the_same_digest_in_another_proc
     assert not (tmp_path / "short.mp4").exists()
 
 
+@pytest.mark.slow
 def test_a_replay_makes_the_same_video_to_the_byte(
     inside: Call, filmed: Path, tmp_path: Path
 ) -> None:
@@ -88,6 +89,7 @@ def test_a_replay_makes_the_same_video_to_the_byte(
     assert (tmp_path / "short.mp4").read_bytes() == (filmed / "short.mp4").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_replay_lies_beside_its_record_and_may_be_quicker(
     fuzzyq: Call, filmed: Path, tmp_path: Path
 ) -> None:
@@ -97,6 +99,7 @@ def test_a_replay_lies_beside_its_record_and_may_be_quicker(
     assert (tmp_path / "short-8x.mp4").stat().st_size < (filmed / "short.mp4").stat().st_size
 
 
+@pytest.mark.slow
 def test_a_film_at_another_speed_replaces_none(
     inside: Call, short: Path, filmed: Path, tmp_path: Path
 ) -> None:
@@ -259,6 +262,7 @@ def test_the_version_is_that_of_the_package_and_the_module_runs_too(installed: C
     assert subprocess.run(module, capture_output=True, text=True).stdout == f"{__version__}\n"
 
 
+@pytest.mark.slow
 def test_help_and_mistakes_load_neither_the_physics_nor_the_plots(tmp_path: Path) -> None:
     code = (
         "import sys\n"
@@ -281,6 +285,7 @@ def test_numpy_is_not_loaded_for_help_nor_scipy_to_know_what_a_scenario_is() -> 
     assert done.stdout == "False\nFalse\n"
 
 
+@pytest.mark.slow
 def test_an_output_that_nobody_reads_to_its_end_changes_nothing(
     short: Path, tmp_path: Path
 ) -> None:
@@ -305,6 +310,7 @@ def test_a_locale_without_the_signs_of_a_page_is_no_reason_to_fail(installed: Ca
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 def test_a_progress_bar_is_shown_on_a_terminal_and_gone_at_the_end(
     short: Path, tmp_path: Path
 ) -> None:

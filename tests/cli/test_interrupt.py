@@ -18,8 +18,6 @@ from tests.helpers.commands import FUZZYQ
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-pytestmark = pytest.mark.slow
-
 OLD = b"an older, good video"
 
 
@@ -64,6 +62,7 @@ def maps(process: subprocess.Popen[str], library: str) -> bool:
         return False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("library", "signum"),
     [
@@ -81,6 +80,7 @@ def test_while_libraries_are_loaded(
     assert not [*tmp_path.rglob("*.part")]
 
 
+@pytest.mark.slow
 def test_while_a_module_is_loaded_that_makes_another_error_of_it(
     short: Path, tmp_path: Path
 ) -> None:
@@ -94,6 +94,7 @@ def test_while_a_module_is_loaded_that_makes_another_error_of_it(
     ends(process, signal.SIGINT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
 def test_while_driving(signum: signal.Signals, long: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
@@ -104,6 +105,7 @@ def test_while_driving(signum: signal.Signals, long: Path, tmp_path: Path) -> No
     assert not list(out.iterdir())
 
 
+@pytest.mark.slow
 def test_while_filming(filmed: Path, tmp_path: Path) -> None:
     record, video = tmp_path / "short.npz", tmp_path / "short-0.1x.mp4"
     record.write_bytes((filmed / "short.npz").read_bytes())
@@ -120,6 +122,7 @@ def test_while_filming(filmed: Path, tmp_path: Path) -> None:
     assert not encoders_of(tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("delay", [0.0, 0.01, 0.04])
 def test_while_the_encoder_starts(delay: float, filmed: Path, tmp_path: Path) -> None:
     record = tmp_path / "short.npz"
@@ -133,6 +136,7 @@ def test_while_the_encoder_starts(delay: float, filmed: Path, tmp_path: Path) ->
     assert not encoders_of(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_job_in_the_background_of_a_script_ignores_ctrl_c_as_jobs_do(
     filmed: Path, tmp_path: Path
 ) -> None:

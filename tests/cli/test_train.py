@@ -31,8 +31,6 @@ from fuzzyq_bullet.training.registry import RECIPES
 from fuzzyq_bullet.training.session import SHIPPED, TrainingConfig, TrainingProgress
 from tests.helpers.commands import FUZZYQ, Call
 
-pytestmark = pytest.mark.slow
-
 PLANNER = "fuzzy-q-lambda"
 EPISODES = 12
 ASKED = ("train", PLANNER, "--scenario", "open-field", "--episodes", str(EPISODES), "--seed", "5")
@@ -93,6 +91,7 @@ def begun(whole: Files, tmp_path: Path) -> Files:
 # --- interrupted, and the same in the end
 
 
+@pytest.mark.slow
 def test_ctrl_c_and_a_kill_cost_nothing_but_the_running_episode(
     whole: Files, tmp_path: Path, fuzzyq: Call
 ) -> None:

@@ -20,8 +20,6 @@ from fuzzyq_bullet.scenario import (
     with_options,
 )
 
-pytestmark = pytest.mark.slow
-
 
 @given(
     st.floats(0.05, 1.0),
@@ -57,6 +55,7 @@ def test_a_robot_that_turns_slowly_in_a_dead_end_is_waited_for():
     assert run(task).outcome == "goal"
 
 
+@pytest.mark.slow
 def test_whoever_is_slow_gets_out_of_a_trap_too():
     robot = Robot(max_speed=0.1, max_turn_rate=0.2, acceleration=0.1, turn_acceleration=0.5)
     task = random_task(3, layout="u-shape", count=None)

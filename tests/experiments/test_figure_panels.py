@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
     from fuzzyq_bullet import Trajectory
 
-pytestmark = pytest.mark.slow
-
 LETTERS = {9: "abc", 10: "abcd", 11: "ab", 12: "abcdefghi"}
 FAILURES = {
     "figure-9a": "collision",
@@ -58,6 +56,7 @@ def bytes_of(figure: Figure) -> bytes:
     return stream.getvalue()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", LETTERS)
 def test_every_panel_of_a_figure_ends_as_its_scenario_promises(
     number: int,
@@ -222,6 +221,7 @@ def test_a_file_of_the_same_name_does_not_replace_a_panels_scenario(
     assert scenario_of(panels_of(10)[0]).name == "figure-10a"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 @pytest.mark.parametrize("name", ["semicircle", "u-shape", "rectangles", "maze"])
 def test_the_layouts_that_are_bundled_to_be_filmed_are_crossed(name: str, drive: str) -> None:

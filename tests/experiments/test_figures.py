@@ -46,6 +46,7 @@ def test_the_same_figure_is_drawn_again_to_the_byte(tmp_path: Path) -> None:
     assert one == other
 
 
+@pytest.mark.slow
 def test_another_planner_may_drive_and_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -18,6 +18,7 @@ def test_the_median_is_that_of_the_pairs_of_a_round():
     assert median_ratio([1.0, 9.0, 3.0], [2.0, 1.0, 4.0]) == 0.75
 
 
+@pytest.mark.slow
 def test_works_take_turns_and_each_time_is_its_own():
     done, now = [], iter(range(100))
     works = [lambda: done.append("a"), lambda: done.append("b")]

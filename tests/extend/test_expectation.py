@@ -18,8 +18,6 @@ from tests.helpers.commands import SHORT
 if TYPE_CHECKING:
     from tests.helpers.commands import Call
 
-pytestmark = pytest.mark.slow
-
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "extend" / "expectation.py"
 
 
@@ -33,6 +31,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_check_holds_runs_to_the_example(fuzzyq: Call, folder: Path) -> None:
     done = fuzzyq("check", folder, "--plugin", EXAMPLE, "--json")
     assert done.returncode == 1, done.stderr
@@ -53,6 +52,7 @@ def test_run_and_the_record_know_it(fuzzyq: Call, folder: Path, tmp_path: Path) 
     assert Trajectory.load(tmp_path / "dizzy.npz").scenario.expect == Expect()
 
 
+@pytest.mark.slow
 def test_pytest_holds_runs_to_it(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "pytest.ini").write_text(
         f"[pytest]\nfuzzyq_scenarios = {folder}\nfuzzyq_plugins = {EXAMPLE}\n"

@@ -16,8 +16,6 @@ from fuzzyq_bullet.video import register_panel, style
 if TYPE_CHECKING:
     from tests.helpers.commands import Call
 
-pytestmark = pytest.mark.slow
-
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "extend" / "panel.py"
 HEIGHT = 720
 """That of a film without panels of a user's own."""
@@ -31,6 +29,7 @@ def frames(film: Path, height: int) -> np.ndarray[Any, np.dtype[np.uint8]]:
     return np.frombuffer(raw, dtype=np.uint8).reshape(-1, height, 1280, 3)
 
 
+@pytest.mark.slow
 def test_the_example_is_in_the_film_below_all_that_was_there(
     fuzzyq: Call, filmed: Path, short: Path, tmp_path: Path
 ) -> None:

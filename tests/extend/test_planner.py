@@ -13,8 +13,6 @@ import pytest
 
 from tests.helpers.commands import FUZZYQ, Call
 
-pytestmark = pytest.mark.slow
-
 EXAMPLE = Path(__file__).parents[2] / "examples" / "extend" / "planner.py"
 WORLD = """\
 name: own
@@ -34,6 +32,7 @@ def world(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_run_and_a_check_take_the_planner_of_a_plugin(world: Path, fuzzyq: Call) -> None:
     assert len(EXAMPLE.read_text(encoding="utf-8").splitlines()) <= 60
     done = fuzzyq(*("run", world, "--plugin", EXAMPLE, "--no-video", "--json"), cwd=world.parent)
@@ -56,6 +55,7 @@ def test_a_key_that_it_does_not_have_is_the_users_mistake(world: Path, fuzzyq: C
 LEARNS = EXAMPLE.with_name("policy.py")
 
 
+@pytest.mark.slow
 def test_a_planner_of_a_plugin_learns_and_uses_what_it_learned(
     world: Path, fuzzyq: Call, tmp_path: Path
 ) -> None:
@@ -73,6 +73,7 @@ def test_a_planner_of_a_plugin_learns_and_uses_what_it_learned(
     assert json.loads(done.stdout)["planner"] == "long-memory"
 
 
+@pytest.mark.slow
 def test_a_training_that_is_interrupted_names_its_plugin_in_the_command_that_goes_on(
     fuzzyq: Call, tmp_path: Path
 ) -> None:

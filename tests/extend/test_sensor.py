@@ -10,8 +10,6 @@ import pytest
 
 from fuzzyq_bullet.trajectory import Trajectory
 
-pytestmark = pytest.mark.slow
-
 EXAMPLE = Path(__file__).parents[2] / "examples" / "extend" / "sensor.py"
 SCENARIO = """\
 name: rounded

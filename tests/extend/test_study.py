@@ -11,12 +11,11 @@ import pytest
 from fuzzyq_bullet.studies import Study, register_study
 from tests.helpers.commands import Call
 
-pytestmark = pytest.mark.slow
-
 EXAMPLE = Path(__file__).parents[2] / "examples" / "extend" / "study.py"
 COMMAND = ("bench", "turn-weight", "--plugin", EXAMPLE, "--runs", "2", "--counts", "5")
 
 
+@pytest.mark.slow
 def test_a_study_of_ones_own_is_a_command_that_goes_on_and_is_in_the_report(
     fuzzyq: Call, tmp_path: Path
 ) -> None:

@@ -22,8 +22,6 @@ from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video import register_panel
 from tests.helpers.commands import Call
 
-pytestmark = pytest.mark.slow
-
 EXTEND = Path(__file__).parents[2] / "examples" / "extend"
 ROOM = """\
 name: room
@@ -38,6 +36,7 @@ def room(tmp_path: Path) -> Path:
     return tmp_path / "room.yaml"
 
 
+@pytest.mark.slow
 def test_a_shape_is_validated_driven_around_filmed_and_checked(
     fuzzyq: Call, inside: Call, room: Path
 ) -> None:
@@ -69,6 +68,7 @@ def test_a_shape_is_validated_driven_around_filmed_and_checked(
     assert "room.yaml:7: obstacles[1].sides: must be at least 3, got 2" in wrong.stderr
 
 
+@pytest.mark.slow
 def test_a_robot_drives_by_its_own_radius_and_limits(
     fuzzyq: Call, inside: Call, room: Path
 ) -> None:

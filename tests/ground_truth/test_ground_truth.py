@@ -23,8 +23,6 @@ from fuzzyq_bullet.ground_truth.search import shortest_route
 from fuzzyq_bullet.scenario import Scenario, realise
 from fuzzyq_bullet.shapes import Box, Boxes, ConvexPolygons
 
-pytestmark = pytest.mark.slow
-
 EXACT = 1e-9
 """Closed forms and the oracle differ by rounding and by the root of what may graze."""
 
@@ -332,6 +330,7 @@ blocks = st.builds(
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(
     st.lists(pillars, max_size=9),
@@ -400,6 +399,7 @@ def scattered(count, side, seed=3):
     return realise(task(**ends, random={"count": count}, seed=seed))
 
 
+@pytest.mark.slow
 def test_a_thousand_obstacles_are_not_too_many():
     for count, side in ((125, 10.0), (1000, 28.3)):
         scenario = scattered(count, side)

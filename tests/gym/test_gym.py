@@ -36,8 +36,6 @@ from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.scenario import Scenario, load_scenario, parse_scenario, realise, with_options
 from fuzzyq_bullet.video import style
 
-pytestmark = pytest.mark.slow
-
 ROOT = Path(__file__).resolve().parents[2]
 WITHOUT = "the extra rl is not installed"
 IDS = tuple(fuzzyq_bullet.gym.ENVIRONMENTS)
@@ -131,6 +129,7 @@ def elsewhere() -> dict[str, Any]:
     return met
 
 
+@pytest.mark.slow
 @both
 def test_the_same_seed_gives_the_same_episodes_in_any_process(
     name: str, make: Any, elsewhere: dict[str, Any]
@@ -151,6 +150,7 @@ def test_without_a_seed_the_sequence_goes_on(name: str, make: Any) -> None:
     assert seeds == [again.reset(seed=1)[1]["seed"], *(again.reset()[1]["seed"] for _ in range(3))]
 
 
+@pytest.mark.slow
 @both
 def test_every_element_of_an_observation_says_something(name: str, make: Any) -> None:
     env = make(name, count=100)
@@ -449,6 +449,7 @@ def test_a_twist_needs_wheels_and_stays_within_the_robots_limits(room: Scenario)
 # --- Weights-v0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 def test_constant_weights_are_the_improved_planner(drive: str, make: Any) -> None:
     settings = {"name": "improved-fuzzy", "weights": (1.25, 0.75), "turn_unit": 0.8}

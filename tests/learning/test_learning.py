@@ -298,6 +298,7 @@ def test_graded_replacing_traces_keep_the_stronger_of_old_and_new() -> None:
 # Known solutions
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("states", "left", "trace_decay"), [(5, 0.0, 0.0), (5, 0.0, 0.8), (19, -1.0, 0.8)]
 )

@@ -31,8 +31,6 @@ from fuzzyq_bullet.learning import (
 from fuzzyq_bullet.learning.checkpoint import Checkpoint, Curve
 from tests.helpers.toys import CliffWalk, Corridor, RandomWalk
 
-pytestmark = pytest.mark.slow
-
 SETUP = Setup(
     30, seed=7, rate=Schedule(0.3), trace_decay=Schedule(0.8), max_steps=60, random_ties=True
 )
@@ -213,6 +211,7 @@ train(Slow(), learner(), SETUP, checkpoint=Path(sys.argv[1]), resume=True)
 """
 
 
+@pytest.mark.slow
 def test_killed_again_and_again_it_ends_in_the_same_table(tmp_path: Path) -> None:
     path = tmp_path / "training.npz"
     script = tmp_path / "train.py"

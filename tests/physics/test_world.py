@@ -14,8 +14,6 @@ from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import MIN_RADIUS, Arena, Box, Cylinder
 from fuzzyq_bullet.sensors import SENSOR_MARGIN, SPREAD, CorridorSensor, ExactSensor
 
-pytestmark = pytest.mark.slow
-
 FIELD = Arena(size=(6.0, 6.0))
 
 
@@ -114,6 +112,7 @@ obstacle = st.one_of(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=150)
 @given(
     obstacles=st.lists(obstacle, max_size=25),
@@ -158,6 +157,7 @@ def test_lines_agree_with_exact_geometry_on_random_worlds(engine):
     assert np.median(errors) <= 0.01 * FUZZYQ.sensor_range
 
 
+@pytest.mark.slow
 def test_nothing_of_the_least_width_slips_between_two_rays(engine):
     least = 2 * MIN_RADIUS
     for shape in (lambda y: box(2.5, y, least, least), lambda y: cylinder(2.5, y, MIN_RADIUS)):
@@ -193,6 +193,7 @@ def test_a_ray_meets_a_face_up_to_its_very_ends(engine):
             assert across == pytest.approx(0.5, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_ten_thousand_obstacles_are_all_sensed(engine):
     grid = [cylinder(1.0 + 1.2 * (k % 100), 1.0 + 1.2 * (k // 100)) for k in range(10_000)]
     world = World(grid, Arena(size=(121.0, 121.0)), engine=engine)

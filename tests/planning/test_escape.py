@@ -18,8 +18,6 @@ from fuzzyq_bullet.planning.ray_search import ray_search
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder, Goal, Limits, Scenario, Start
 from tests.helpers.exploring import RANGE, WIDE, observe
 
-pytestmark = pytest.mark.slow
-
 FULL = ImprovedFuzzySettings(weights=(1.0, 1.0))
 
 
@@ -68,6 +66,7 @@ def modes_of(trajectory):
     return {MODES[mode] for mode in trajectory.decisions.mode}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 @pytest.mark.parametrize("trap", TRAPS)
 def test_it_gets_out_of_traps_and_touches_nothing(trap, drive):
@@ -85,6 +84,7 @@ def test_without_the_schemes_the_same_traps_hold_it(trap):
     assert modes_of(trajectory) == {"routine"}
 
 
+@pytest.mark.slow
 def test_a_breakout_that_is_not_sustained_does_not_get_out_of_a_semicircle():
     brief = ImprovedFuzzySettings(weights=(1.0, 1.0), following=False)
     trajectory = run(task(TRAPS["semicircle"], planner=brief, time=60.0))
@@ -92,6 +92,7 @@ def test_a_breakout_that_is_not_sustained_does_not_get_out_of_a_semicircle():
     assert "following" not in modes_of(trajectory)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 def test_where_there_is_no_way_it_ends_without_a_touch(drive):
     prison = (

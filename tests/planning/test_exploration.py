@@ -24,8 +24,6 @@ from fuzzyq_bullet.planning.scan import scan_360
 from fuzzyq_bullet.scenario import Scenario
 from tests.helpers.exploring import BODY, HIDDEN, RANGE, WIDE, free, map_of, observe, standing
 
-pytestmark = pytest.mark.slow
-
 
 def row(gap):
     """Return a long wall of cylinders 0.6 m ahead with a gap in it."""

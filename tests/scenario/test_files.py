@@ -211,6 +211,7 @@ LAUGHS = "a: &a [1, 1]\n" + "".join(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [
@@ -366,6 +367,7 @@ item = st.one_of(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=100)
 @given(
     st.lists(item, max_size=3),

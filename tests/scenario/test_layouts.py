@@ -31,8 +31,6 @@ from fuzzyq_bullet.scenario import (
 from fuzzyq_bullet.scenario.layouts.maze import carve, runs
 from fuzzyq_bullet.scenario.layouts.rectangles import overlap
 
-pytestmark = pytest.mark.slow
-
 TRAPS = ["semicircle", "arc", "u-shape", "long-wall"]
 ALL = [*TRAPS, "rectangles", "maze", "cellular", "scatter"]
 COUNTED = {"rectangles": {"count": 25}, "scatter": {"count": 25}}
@@ -69,6 +67,7 @@ def extent_of(item) -> tuple[np.ndarray, np.ndarray]:
 # --- what holds for all of them
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ALL)
 @settings(max_examples=5)
 @given(seeds, st.booleans(), st.sampled_from([(9.0, 5.0), (9.0, 9.2), (5.0, 9.0), (1.2, 0.6)]))
@@ -137,6 +136,7 @@ def middle_and_opening(drawn):
     return middle, math.atan2(-back[1], -back[0]), float(np.hypot(*back))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", TRAPS)
 def test_a_trap_stands_in_the_way_between_start_and_goal(layout):
     lengths = []
@@ -335,6 +335,7 @@ def test_loops_make_a_maze_shorter_until_nothing_is_left():
     assert realise(asked("maze", loops=1.0)).obstacles == ()
 
 
+@pytest.mark.slow
 def test_a_maze_among_listed_obstacles_leaves_a_way_or_says_so():
     pillar = {"shape": "cylinder", "position": [5.0, 5.0], "radius": 0.8}
     assert all(feasible(realise(asked("maze", obstacles=[pillar]), seed)) for seed in range(2))

@@ -119,6 +119,7 @@ def test_a_drawn_scenario_is_the_same_after_a_trip_through_a_file():
     assert parse_scenario(dump_scenario(drawn)) == drawn
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("random", "arena"),
     [

@@ -101,6 +101,7 @@ def test_an_observation_is_stored_and_decided_upon_again(drive):
         old.sense([0.12345])
 
 
+@pytest.mark.slow
 def test_every_ray_passes_the_model_and_the_same_seed_measures_the_same():
     class Noisy(SensorModel):
         model: Literal["noisy"]

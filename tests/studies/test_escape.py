@@ -235,6 +235,7 @@ def test_cellular_corridors_of_all_densities_take_turns() -> None:
     assert all(obstacle.radius == 0.075 for obstacle in task.obstacles)
 
 
+@pytest.mark.slow
 def test_what_knows_the_truth_is_told_beside_a_planner(tmp_path: Path, inside: Call) -> None:
     few = ("--counts", "100", "--runs", "1", "--seed", "9", "--traps", "0", "--rectangles", "none")
     command = ("bench", "escape", *few, "--drive", "kinematic", "--beside", "--json")

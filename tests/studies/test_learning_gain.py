@@ -55,8 +55,6 @@ from fuzzyq_bullet.training.registry import learn, recipe_of
 from fuzzyq_bullet.training.tasks import FIRST_SEED, Tasks
 from tests.helpers.commands import Call, no_workers
 
-pytestmark = pytest.mark.slow
-
 SLOW, FAST = HALF, ONE
 PAIR = "best pair"
 ROLES = {PAIR: label_of(FAST)}
@@ -425,6 +423,7 @@ def test_another_training_makes_another_comparison(policy: tuple[Policy, Path]) 
 # The whole of it, as people call it
 
 
+@pytest.mark.slow
 def test_it_runs_goes_on_and_says_what_it_found(
     fuzzyq: Call, inside: Call, policy: tuple[Policy, Path], tmp_path: Path
 ) -> None:

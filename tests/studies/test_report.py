@@ -35,8 +35,6 @@ from fuzzyq_bullet.workers import WorkerPool
 from tests.helpers.browser import CHROMIUM, browsing
 from tests.helpers.commands import Here
 
-pytestmark = pytest.mark.slow
-
 PLANNERS = ("fuzzy", "fuzzy-q-lambda")
 
 
@@ -205,6 +203,7 @@ def test_what_is_no_element_is_text() -> None:
     assert isinstance(join("a"), Html)
 
 
+@pytest.mark.slow
 def test_every_sweep_of_a_folder_is_on_the_page(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -310,6 +309,7 @@ def filmed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home / "report.html"
 
 
+@pytest.mark.slow
 def test_runs_are_made_again_from_their_rows_and_those_that_differ_are_marked(
     filmed: Path,
 ) -> None:
@@ -397,6 +397,7 @@ def test_a_mistake_is_one_line_and_leaves_nothing_behind(
         assert not (folder / "report.html").exists()
 
 
+@pytest.mark.slow
 def test_a_page_of_somebody_elses_is_replaced_only_when_asked_to(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

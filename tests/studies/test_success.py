@@ -30,8 +30,6 @@ from fuzzyq_bullet.studies.success.study import COUNTS, RUNS, Success
 from fuzzyq_bullet.studies.success.table import summary_of
 from tests.helpers.commands import Call, no_workers
 
-pytestmark = pytest.mark.slow
-
 PAIR = Weights(1.5, 0.5, 1.0)
 
 
@@ -223,6 +221,7 @@ SUCCESS = (
 )
 
 
+@pytest.mark.slow
 def test_the_command_writes_rows_summary_and_picture(fuzzyq: Call, tmp_path: Path) -> None:
     done = fuzzyq(*SUCCESS, "--out", tmp_path, "--json")
     assert done.returncode == 0, done.stderr

@@ -25,8 +25,6 @@ from fuzzyq_bullet.studies.sweep import State, local_pool, run_job, sweep
 from fuzzyq_bullet.workers import Pool, WorkerPool
 from tests.helpers.commands import FUZZYQ, Call, no_workers
 
-pytestmark = pytest.mark.slow
-
 FAST = ImprovedFuzzySettings(weights=(1.0, 1.0))
 CONTRACT = (
     "planner,drive,count,run,seed,feasible,outcome,steps,time_s,path_length_m,shortest_path_m,spl,"
@@ -160,6 +158,7 @@ def test_an_environment_that_cannot_be_built_is_a_row_with_its_error() -> None:
     assert "10000" in (row.error or "")
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_costs_one_row_and_not_the_sweep(tmp_path: Path) -> None:
     with local_pool(2) as pool:
         done = sweep("t", jobs_for(5, 5), tmp_path, {}, pool=pool, work=deadly)
@@ -168,6 +167,7 @@ def test_a_worker_that_dies_costs_one_row_and_not_the_sweep(tmp_path: Path) -> N
     assert (again.state.ran, again.rows) == (0, done.rows)
 
 
+@pytest.mark.slow
 def test_a_worker_that_hangs_costs_one_row_and_is_not_tried_again(tmp_path: Path) -> None:
     with WorkerPool(1, timeout=1.0) as pool:
         done = sweep("t", jobs_for(5, 4), tmp_path, {}, pool=pool, work=hanging)
@@ -269,6 +269,7 @@ def undisturbed(inside: Call, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_killed_it_goes_on_and_ends_in_the_same_bytes(
     undisturbed: Path, fuzzyq: Call, tmp_path: Path
 ) -> None:
@@ -296,6 +297,7 @@ def test_killed_it_goes_on_and_ends_in_the_same_bytes(
         assert not list(folder.glob(".*"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moment", ["while workers start", "while they work"])
 def test_ctrl_c_ends_a_sweep_in_good_order(moment: str, tmp_path: Path) -> None:
     process = subprocess.Popen(

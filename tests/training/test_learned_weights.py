@@ -40,8 +40,6 @@ from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM, TRIES, Tasks
 if TYPE_CHECKING:
     from pathlib import Path
 
-pytestmark = pytest.mark.slow
-
 
 def situation(distance: float, difference: float) -> Situation:
     inferred = paper_controller().infer(distance, difference)
@@ -115,6 +113,7 @@ def test_a_choice_stands_until_the_robot_is_nearer_than_ever_and_on_no_way_out(
             chosen, was_clear = to_goal, clear
 
 
+@pytest.mark.slow
 def test_it_chooses_anew_only_where_an_encounter_begins(tmp_path: Path) -> None:
     path = tmp_path / "two.json"
     thinking(0, 1, len(ACTIONS) - 1).save(path)
@@ -130,6 +129,7 @@ def test_it_chooses_anew_only_where_an_encounter_begins(tmp_path: Path) -> None:
         assert away[index] <= away[:index].min()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("action", [0, len(ACTIONS) - 1])
 def test_a_policy_that_knows_one_answer_drives_like_fixed_weights(
     action: int, tmp_path: Path
@@ -191,6 +191,7 @@ def test_a_policy_for_other_states_is_refused(tmp_path: Path) -> None:
         make_planner(FuzzyQLambdaSettings(policy=str(path)), np.random.default_rng(0))
 
 
+@pytest.mark.slow
 def test_what_an_episode_earns_is_its_delay(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fuzzyq_bullet.training.problems.MOST_LOST", math.inf)
     tasks = Tasks(drive="wheels", scenario=load_scenario("u-shape"))
@@ -239,6 +240,7 @@ def test_a_field_without_a_way_is_drawn_anew() -> None:
     assert any(one.seed % TRIES for one in dense)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1])
 def test_ways_are_those_of_the_oracle(seed: int) -> None:
     scenario = realise(random_task(seed, count=60))

@@ -217,6 +217,7 @@ def trapped() -> Trajectory:
     return episode.run(load_scenario("figure-10b"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [1.0, 4.0])
 def test_in_every_frame_the_sentence_is_true_of_what_the_panels_show(
     real: Trajectory, speed: float, monkeypatch: pytest.MonkeyPatch

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.video.paint import DirtyRegion
 
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("still_once")]
+pytestmark = pytest.mark.usefixtures("still_once")
 
 
 def pixels(image: Image.Image, rect: Rect) -> np.ndarray[Any, np.dtype[np.int64]]:
@@ -54,6 +54,7 @@ def middle(run: Trajectory) -> Image.Image:
     return frame(run, 5.5)
 
 
+@pytest.mark.slow
 def test_the_scene_shows_robot_lines_and_goal(middle: Image.Image) -> None:
     scene = pixels(middle, SCENE)
     assert count(scene, style.GOAL, 30) > 100
@@ -119,6 +120,7 @@ def test_the_rule_that_fires_most_is_the_brightest(run: Trajectory) -> None:
     assert (np.diff(light.ravel()[order]) >= -6).all()
 
 
+@pytest.mark.slow
 def test_an_obstacle_in_front_hides_the_robot() -> None:
     world = scenario(0, 0, start=(2.0, 4.0), goal=(8.0, 4.0))
     free = drive(world, seconds=0.0)
@@ -161,6 +163,7 @@ def assembled(run: Trajectory, until: float) -> Image.Image:
     return image
 
 
+@pytest.mark.slow
 def test_redrawing_only_what_changed_gives_the_same_frame(run: Trajectory) -> None:
     until = 6.0
     step_by_step, at_once = assembled(run, until), frame(run, until)
@@ -238,6 +241,7 @@ def all_runs() -> dict[str, Trajectory]:
     return runs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_every_kind_of_run_is_drawn_with_all_text_in_its_box(
     all_runs: dict[str, Trajectory], name: str, monkeypatch: pytest.MonkeyPatch
@@ -294,6 +298,7 @@ def test_every_kind_of_run_is_drawn_with_all_text_in_its_box(
         assert y + image.height <= style.HEIGHT
 
 
+@pytest.mark.slow
 def test_the_robot_can_be_seen_in_any_arena(all_runs: dict[str, Trajectory]) -> None:
     for name in ("a thousand", "huge", "tiny", "long"):
         picture = frame(all_runs[name], 1.0)

@@ -20,8 +20,6 @@ from tests.helpers.synthetic import drive, scenario
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def far() -> Trajectory:
@@ -51,6 +49,7 @@ def test_shots_follow_one_another_and_none_spans_more_than_can_be_seen_from_near
         assert np.ptp(path, axis=0).max() <= SPAN + 1e-9
 
 
+@pytest.mark.slow
 def test_in_every_shot_robot_and_lines_are_legible_and_in_the_picture(far: Trajectory) -> None:
     scene, timeline = Scene(far), Timeline(far)
     shots = Shots(far)
@@ -67,6 +66,7 @@ def test_in_every_shot_robot_and_lines_are_legible_and_in_the_picture(far: Traje
     scene.close()
 
 
+@pytest.mark.slow
 def test_a_shot_looks_the_same_whatever_was_shown_before(far: Trajectory) -> None:
     shots, timeline = Shots(far), Timeline(far)
     times = [float(far.ticks.time[shots[k].tick]) + 0.2 for k in range(3)]

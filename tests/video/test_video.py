@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
 
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("still_once")]
+pytestmark = pytest.mark.usefixtures("still_once")
 
 
 def ffmpeg() -> str:
@@ -72,6 +72,7 @@ def shown(made: Path) -> np.ndarray[Any, np.dtype[np.uint8]]:
     return decoded(made)
 
 
+@pytest.mark.slow
 def test_decoded_video_has_the_promised_frames_size_and_duration(
     made: Path, shown: np.ndarray[Any, Any]
 ) -> None:
@@ -87,6 +88,7 @@ def test_a_browser_can_start_before_the_download_ends(made: Path) -> None:
     assert head.index(b"moov") < head.index(b"mdat")
 
 
+@pytest.mark.slow
 def test_the_same_run_gives_the_same_bytes(
     short: Trajectory, made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -128,6 +130,7 @@ def test_it_closes_on_the_outcome_for_a_second(shown: np.ndarray[Any, Any]) -> N
     assert all(np.abs(image - before).mean() > 10 for image in closing)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "frames"), [(0.5, 91), (10.0, 5), (100.0, 1)])
 def test_speed_scales_time(short: Trajectory, tmp_path: Path, speed: float, frames: int) -> None:
     assert record(short, tmp_path / "x.mp4", speed=speed).frames == frames + 30
@@ -239,6 +242,7 @@ def test_names_that_look_like_options_or_patterns_are_names(
     assert (tmp_path / "-i pipe:%03d.mp4").stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_run(tmp_path: Path) -> None:
     world = scenario(5, 0)
 

@@ -16,8 +16,6 @@ from fuzzyq_bullet import UserError
 from fuzzyq_bullet.workers.cluster import cluster
 from tests.helpers.commands import Call
 
-pytestmark = pytest.mark.slow
-
 pytest.importorskip("distributed", reason="needs the extra cluster")
 
 SWEEP = (

@@ -8,8 +8,6 @@ import pytest
 
 from fuzzyq_bullet.workers import WorkerPool
 
-pytestmark = pytest.mark.slow
-
 kept: list[bytes] = []
 
 
@@ -19,6 +17,7 @@ def keep(megabytes: int) -> int:
     return os.getpid()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("megabytes", "processes"), [(1, 1), (450, 2)])
 def test_a_worker_that_holds_much_memory_makes_way_for_a_fresh_one(
     megabytes: int, processes: int
