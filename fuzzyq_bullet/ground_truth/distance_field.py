@@ -12,8 +12,8 @@ from fuzzyq_bullet.scenario.models import Scenario
 
 CELL = 0.05
 """Side of a cell (m)."""
-ROOM = 0.21
-"""Radius (m) of the disc that must fit: between that of the robot and what it can see."""
+SPARE = 0.01
+"""How much wider (m) than the robot the disc is that must fit, where nothing else is said."""
 
 
 class DistanceField:
@@ -25,13 +25,16 @@ class DistanceField:
 
     Args:
         scenario: A realised scenario.
+        room: Radius (m) of the disc that must fit; by default a little more than the robot's.
     """
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(self, scenario: Scenario, room: float | None = None) -> None:
+        if room is None:
+            room = scenario.robot.spec.radius + SPARE
         grid = OccupancyGrid.over((0.0, 0.0), scenario.arena.size, CELL)
         points = grid.points()
         field = Field.of(scenario.obstacles, scenario.arena)
-        grid.free[:] = (field.clearance(points.reshape(-1, 2)) >= ROOM).reshape(grid.free.shape)
+        grid.free[:] = (field.clearance(points.reshape(-1, 2)) >= room).reshape(grid.free.shape)
         at_goal = np.hypot(*np.moveaxis(points - scenario.goal.position, 2, 0))
         source = np.unravel_index(np.where(grid.free, at_goal, np.inf).argmin(), at_goal.shape)
         lengths = grid.distances((int(source[0]), int(source[1])), SIXTEEN, past_corners=True)

@@ -90,7 +90,7 @@ def drive_true_exits(scenario: Scenario) -> Trajectory:
     """Drive a realised scenario by its planner, which is told the true way on from every exit."""
     planner = planner_of(scenario)
     if isinstance(planner, ImprovedFuzzyBase):
-        planner.know(DistanceField(scenario).at)
+        planner.know(DistanceField(scenario, ROOM).at)
     return run_with(planner, scenario)
 
 
