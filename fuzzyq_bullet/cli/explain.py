@@ -10,7 +10,10 @@ import typer
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from fuzzyq_bullet.fuzzy.sets import Variable
+    from fuzzyq_bullet.learning import Policy
 
 RuleTable: TypeAlias = Literal["corrected", "printed"]
 """That of ``fuzzyq_bullet.fuzzy``, which waits until it is needed so that --help is quick."""
@@ -21,15 +24,15 @@ CONTEXT_SETTINGS: dict[str, Any] = {"ignore_unknown_options": True}
 
 def explain(
     distance: Annotated[
-        float, typer.Argument(metavar="D", help="Free distance ahead, in steps S_p: 0 to 5.")
-    ],
+        float | None, typer.Argument(metavar="D", help="Free distance ahead, in steps S_p: 0 to 5.")
+    ] = None,
     difference: Annotated[
-        float,
+        float | None,
         typer.Argument(
             metavar="DF",
             help="Free distance on the left less that on the right, in S_p: -5 to 5.",
         ),
-    ],
+    ] = None,
     *,
     rules: Annotated[
         RuleTable,
@@ -38,33 +41,68 @@ def explain(
     samples: Annotated[
         int, typer.Option(help="Points of the centroid (n of Eq. 22); the paper takes 5.")
     ] = 101,
+    policy: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="A policy of fuzzy-q-lambda, or the word shipped: show the weights of each rule.",
+        ),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout, alone.")] = False,
 ) -> None:
     """Show which fuzzy rules fire, how strongly, and the turn and step that follow.
 
+    With --policy also what each rule has learned; then D and DF may be left out.
+
     Raises:
-        UserError: If an input lies outside its domain or is not a number, or there are too few
-            samples.
+        UserError: If an input lies outside its domain, is missing or is not a number, there are
+            too few samples, or the policy cannot be used.
     """
     from fuzzyq_bullet.fuzzy import paper_controller
     from fuzzyq_bullet.fuzzy.inference import LEAST_SAMPLES
 
     if samples < LEAST_SAMPLES:
         raise UserError(f"--samples: {samples} is too few; at least {LEAST_SAMPLES}")
+    if difference is None and (distance is not None or policy is None):
+        raise UserError(f"{'D' if distance is None else 'DF'}: missing; give D and DF, or --policy")
     controller = paper_controller(rules, samples)
-    _check("D", distance, controller.base.row)
-    _check("DF", difference, controller.base.column)
-    inference = controller.infer(distance, difference)
-    from fuzzyq_bullet.cli.explain_page import as_dict, as_page
+    learned = None if policy is None else _learned(policy)
+    inference = None
+    if distance is not None and difference is not None:
+        _check("D", distance, controller.base.row)
+        _check("DF", difference, controller.base.column)
+        inference = controller.infer(distance, difference)
+    from rich.console import Console, Group
 
+    from fuzzyq_bullet.cli.explain_page import as_dict, as_page
+    from fuzzyq_bullet.cli.explain_weights import weights_as_dict, weights_as_page
+
+    console = Console(highlight=False)
+    answer: dict[str, Any] = {}
+    parts: list[RenderableType] = []
+    if inference is not None and distance is not None and difference is not None:
+        answer |= as_dict(controller, rules, distance, difference, inference)
+        page = as_page(
+            controller, rules, distance, difference, inference, console.width,
+            known=learned is not None,
+        )  # fmt: skip
+        parts.append(page)
+    if learned is not None:
+        answer |= weights_as_dict(learned, inference)
+        parts.append(weights_as_page(learned, inference))
     if json:
-        answer = as_dict(controller, rules, distance, difference, inference)
         typer.echo(dumps(answer, indent=2))
     else:
-        from rich.console import Console
+        console.print(Group(*parts))
 
-        console = Console(highlight=False)
-        console.print(as_page(controller, rules, distance, difference, inference, console.width))
+
+def _learned(name: str) -> Policy:
+    from fuzzyq_bullet.planning import FuzzyQLambdaSettings
+    from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
+    from fuzzyq_bullet.planning.policies import policy_of
+
+    settings = FuzzyQLambdaSettings(policy=None if name == "shipped" else name)
+    return policy_of(settings, POLICY_SPEC)
 
 
 def _check(name: str, value: float, variable: Variable) -> None:

@@ -66,8 +66,20 @@ def as_page(
     difference: float,
     inference: Inference,
     width: int,
+    *,
+    known: bool = False,
 ) -> RenderableType:
-    """Return the inference as a page of ``width`` columns, legible without colour."""
+    """Return the inference as a page of ``width`` columns, legible without colour.
+
+    Args:
+        controller: What inferred.
+        rules: Its table.
+        distance: d.
+        difference: Df.
+        inference: What came out.
+        width: Columns of the page.
+        known: Whether the weights in force are known, and told elsewhere.
+    """
     base = controller.base
     near = _memberships(f"d = {distance:g} S_p free ahead", base.row, inference.near)
     side = _memberships(
@@ -80,20 +92,20 @@ def as_page(
         inputs.add_row(near)
         inputs.add_row(side)
     return Group(
-        _title("Inputs, and how far they belong to each set (Table 2)"),
+        title_line("Inputs, and how far they belong to each set (Table 2)"),
         inputs,
         Text(),
-        _title(f"Rules (Table 4, {rules}): [turn step] and strength, ◀ the strongest"),
+        title_line(f"Rules (Table 4, {rules}): [turn step] and strength, ◀ the strongest"),
         Text("Columns NB and NS: the right is freer; PS and PB: the left is."),
         _rule_table(controller, inference, folded=width < WIDE),
-        _title("Rules that fire, strongest first"),
+        title_line("Rules that fire, strongest first"),
         _sentences(controller, inference, width),
         Text(),
-        _title(f"Outputs (centroid of {controller.samples} points, Eq. 22)"),
+        title_line(f"Outputs (centroid of {controller.samples} points, Eq. 22)"),
         _outputs(base.outputs, inference, folded=width < WIDE),
         Text(),
-        _title("In metres and degrees"),
-        _in_units(inference),
+        title_line("In metres and degrees"),
+        _in_units(inference, known=known),
     )
 
 
@@ -103,7 +115,8 @@ def _firing(controller: FuzzyController, inference: Inference) -> list[tuple[flo
     return sorted(pairs, key=lambda pair: -pair[0])
 
 
-def _title(words: str) -> Text:
+def title_line(words: str) -> Text:
+    """Return a heading."""
     return Text(words, style="bold underline")
 
 
@@ -224,17 +237,23 @@ def _outputs(variables: tuple[Variable, ...], inference: Inference, *, folded: b
     return grid
 
 
-def _in_units(inference: Inference) -> Group:
+def _in_units(inference: Inference, *, known: bool) -> Group:
     """Say what the outputs come to with the weights that count most: 1, and the default."""
     w1, w2 = WEIGHTS
-    return Group(
+    lines = [
         f"S_p = {STEP_UNIT:g} m; A_p = {math.degrees(TURN_UNIT):.0f}° unless turn_unit is set.",
-        f"ω1, ω2 = 1, 1: {_turn_and_step(inference, 1.0, 1.0)}",
-        f"ω1, ω2 = {w1:g}, {w2:g}: {_turn_and_step(inference, w1, w2)} (default)",
-    )
+        f"ω1, ω2 = 1, 1: {turn_and_step(inference, 1.0, 1.0)}",
+    ]
+    if not known:
+        lines.append(
+            f"ω1, ω2 = {w1:g}, {w2:g}: {turn_and_step(inference, w1, w2)} "
+            "(default of improved-fuzzy)"
+        )
+    return Group(*lines)
 
 
-def _turn_and_step(inference: Inference, w1: float, w2: float) -> str:
+def turn_and_step(inference: Inference, w1: float, w2: float) -> str:
+    """Say what an inference comes to with weights ω1 and ω2."""
     degrees = round(math.degrees(w2 * inference.turn * TURN_UNIT), 1)
     way = f"{abs(degrees):.1f}° to the {'left' if degrees > 0 else 'right'}" if degrees else "0°"
     return f"turn {way}, step {w1 * inference.stride * STEP_UNIT:.3f} m"

@@ -17,37 +17,66 @@ from fuzzyq_bullet.cli.options import (
     ReplaceOthersOption,
 )
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.wording import shorten
 
 
 def figure(
-    number: Annotated[
-        int, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper.")
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="FIGURE", help="Number of a figure in the paper; weights; or curves."
+        ),
     ],
+    policies: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[POLICY]...", help="For weights and curves: what fuzzyq train wrote."
+        ),
+    ] = None,
+    *,
     out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
     planner: PlannerOption = None,
     plugin: PluginOption = None,
     replace: ReplaceOthersOption = False,
 ) -> None:
-    """Draw a figure of the paper and print the files written.
+    """Draw a figure of the paper, or a picture of what was learned; print the files written.
 
     Raises:
-        UserError: If no figure has this number, or a planner is named for one that is made of no
-            runs; if the file cannot be written, or is there and no figure of this command's.
+        UserError: If there is no such figure, or a planner or policies are named for one that
+            shows none; if the file cannot be written, or is there and no figure of this command's.
     """
-    from fuzzyq_bullet.figures import FIGURES, MARK, OF_RUNS, drawing, file_name
+    from fuzzyq_bullet.figures import (
+        FIGURES,
+        LEARNED,
+        MARK,
+        OF_RUNS,
+        drawing,
+        drawing_learned,
+        file_name,
+    )
     from fuzzyq_bullet.files import refuse_inputs
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
 
-    if number not in FIGURES:
-        known = "; ".join(f"{key} ({shows})" for key, shows in sorted(FIGURES.items()))
-        raise UserError(f"NUMBER: no figure {number}; there are: {known}")
-    if planner is not None and number not in OF_RUNS:
-        raise UserError(f"--planner: figure {number} shows no run that a planner could drive")
-    target = out / file_name(f"figure{number}", planner)
-    refuse_inputs([target], plugin_inputs(plugin or []))
+    known = {str(number): shows for number, shows in FIGURES.items()} | LEARNED
+    if name not in known:
+        told = "; ".join(f"{key} ({shows})" for key, shows in known.items())
+        raise UserError(f"FIGURE: no figure {shorten(name)}; there are: {told}")
+    given = policies or []
+    if name in LEARNED:
+        if planner is not None:
+            raise UserError(f"--planner: {name} shows no run that a planner could drive")
+        target, draw = out / file_name(name), drawing_learned(name, given)
+    else:
+        number = int(name)
+        if given:
+            raise UserError(f"POLICY: figure {name} shows nothing that was learned")
+        if planner is not None and number not in OF_RUNS:
+            raise UserError(f"--planner: figure {name} shows no run that a planner could drive")
+        target, draw = out / file_name(f"figure{name}", planner), drawing(number, planner)
+    refuse_inputs([target], [*given, *plugin_inputs(plugin or [])])
     if not replace:
         refuse_others_file(target, MARK)
-    for path in drawing(number, planner)(out):
+    for path in draw(out):
         typer.echo(path)
 
 

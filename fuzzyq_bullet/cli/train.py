@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import shlex
 from json import dumps
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from fuzzyq_bullet.cli.options import PluginOption, progress_bar, say
 from fuzzyq_bullet.errors import Stopped, UserError
+
+HOW: dict[str, Any] = {"rich_help_panel": "How it learns (otherwise than usual)"}
+"""Where --help shows what few need."""
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.learning.checkpoint import Curve
@@ -20,13 +24,48 @@ if TYPE_CHECKING:
 def train(
     planner: Annotated[str, typer.Argument(metavar="PLANNER", help="Planner that learns.")],
     *,
-    episodes: Annotated[int, typer.Option(help="Episodes to learn from.")] = 200,
-    drive: Annotated[str, typer.Option(help="kinematic, or wheels (physics).")] = "kinematic",
+    episodes: Annotated[
+        int | None, typer.Option(help="Episodes to learn from.", show_default="200")
+    ] = None,
+    drive: Annotated[
+        str | None,
+        typer.Option(help="kinematic, or wheels (physics).", show_default="kinematic"),
+    ] = None,
     scenario: Annotated[
         str | None,
         typer.Option(help="Learn on this file or bundled scenario, not on random fields."),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the training.")] = 0,
+    seed: Annotated[
+        int | None, typer.Option(help="Seed of the training.", show_default="0")
+    ] = None,
+    rate: Annotated[
+        str | None,
+        typer.Option(metavar="FROM[:TO]", help="Learning rate η, as in 0.1:0.01.", **HOW),
+    ] = None,
+    trace: Annotated[
+        str | None, typer.Option(metavar="FROM[:TO]", help="Trace decay λ, as in 0.9.", **HOW)
+    ] = None,
+    epsilon: Annotated[
+        str | None,
+        typer.Option(metavar="FROM[:TO]", help="Exploration ε, as in 0.5:0.05.", **HOW),
+    ] = None,
+    discount: Annotated[
+        str | None, typer.Option(metavar="NUMBER", help="Discount γ, 0 to 1.", **HOW)
+    ] = None,
+    reward: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PARTS",
+            help="As in hit=30,given_up=10,progress=1; or the name of a plugin's reward.",
+            **HOW,
+        ),
+    ] = None,
+    options: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="YAML file with any of these; the command line wins.", **HOW
+        ),
+    ] = None,
     out: Annotated[
         str | None,
         typer.Option(
@@ -57,6 +96,7 @@ def train(
         raise UserError("--resume, --anew: give one of them; the first goes on, the other does not")
     from fuzzyq_bullet.files import alone_at, refuse_inputs
     from fuzzyq_bullet.outputs import plugin_inputs
+    from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions, read_options
     from fuzzyq_bullet.training.session import (
         TrainingFiles,
         TrainingProgress,
@@ -67,13 +107,33 @@ def train(
         tasks_for,
     )
 
-    config = config_for(planner, episodes, drive, seed, scenario)
+    given = {
+        name: text
+        for name, text in (
+            *(("rate", rate), ("trace", trace), ("epsilon", epsilon)),
+            *(("discount", discount), ("reward", reward)),
+        )
+        if text is not None
+    }
+    asked, plain = (AS_USUAL, {}) if options is None else read_options(options)
+    here = {"episodes": episodes, "drive": drive, "seed": seed}
+    plain |= {name: value for name, value in here.items() if value is not None}
+    config = config_for(
+        planner,
+        plain.get("episodes", 200),
+        plain.get("drive", "kinematic"),
+        plain.get("seed", 0),
+        scenario,
+        asked.changed_by(LearningOptions.parse(given)),
+        plugin or [],
+    )
     files = TrainingFiles.of(config.planner, out)
     tasks = tasks_for(config)
     files.check()
     from fuzzyq_bullet.scenario import find_scenario
 
     read = [] if scenario is None else [find_scenario(scenario)]
+    read += [] if options is None else [options]
     refuse_inputs(files.all, [*read, *plugin_inputs(plugin or [])])
     try:
         with alone_at(files.checkpoint):
@@ -82,7 +142,6 @@ def train(
             curve = _learn(config, tasks, files, progress, resume=resume)
     except Stopped:
         where = [] if out is None else ["--out", out]
-        where += [word for name in plugin or [] for word in ("--plugin", name)]
         again = f"{config.command} {shlex.join([*where, '--resume'])}"
         kept = episodes_kept(files.checkpoint)
         say(f"{kept} of {config.episodes} episodes are kept; to go on: {again}")

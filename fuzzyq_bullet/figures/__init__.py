@@ -1,4 +1,4 @@
-"""The paper's figures, by number, and the learning curve.
+"""The paper's figures, by number, and pictures of what was learned.
 
 A new figure is one new line in ``FIGURES``, and what draws it: a module with a function ``draw``,
 or, if it is made of runs, an entry in ``runs``.
@@ -6,10 +6,12 @@ or, if it is made of runs, an entry in ``runs``.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TypeAlias
+
+from fuzzyq_bullet.errors import UserError
 
 Draw: TypeAlias = Callable[[Path], list[Path]]
 """Draws into a folder and returns the files written, the main one first."""
@@ -26,6 +28,13 @@ FIGURES = {
     12: "80 and 120 random obstacles, rectangles, dense rectangles",
 }
 """What each figure shows, in a few words."""
+
+
+LEARNED = {
+    "weights": "the weights that each rule has learned: of a POLICY, or of the one shipped",
+    "curves": "the learning curves of the trainings that wrote the POLICY files",
+}
+"""Pictures of trainings, by name."""
 
 
 def file_name(name: str, planner: str | None = None) -> str:
@@ -50,3 +59,24 @@ def drawing(number: int, planner: str | None = None) -> Draw:
     from fuzzyq_bullet.figures import runs
 
     return partial(runs.FIGURES[number].draw, planner=planner)
+
+
+def drawing_learned(name: str, policies: Sequence[Path]) -> Draw:
+    """Return the function that draws a picture of ``LEARNED``.
+
+    Args:
+        name: Of the picture.
+        policies: What it shows.
+
+    Raises:
+        UserError: If more policies are named than it shows.
+    """
+    if name == "curves":
+        from fuzzyq_bullet.figures import curves
+
+        return partial(curves.draw, policies=policies)
+    from fuzzyq_bullet.figures import rule_weights
+
+    if len(policies) > 1:
+        raise UserError(f"POLICY: weights shows one policy, got {len(policies)}")
+    return partial(rule_weights.draw, policy=policies[0] if policies else None)

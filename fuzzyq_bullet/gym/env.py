@@ -21,7 +21,7 @@ from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation
 from fuzzyq_bullet.scenario import Robot, Scenario
-from fuzzyq_bullet.training.rewards import Reward
+from fuzzyq_bullet.training.rewards import USUAL, Transition
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video.map import Map
 from fuzzyq_bullet.video.timeline import Timeline, sensed_at
@@ -120,12 +120,8 @@ class EpisodeEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         first, second = np.clip(numbers, -1.0, 1.0).tolist()
         self._act(episode, first, second)
         now, outcome, goal = episode.now, episode.outcome, scenario.goal.position
-        reward = Reward.of(
-            seconds=now.time - before.time,
-            nearer=math.dist((before.x, before.y), goal) - math.dist((now.x, now.y), goal),
-            max_speed=scenario.robot.max_speed,
-            outcome=outcome,
-        )
+        nearer = math.dist((before.x, before.y), goal) - math.dist((now.x, now.y), goal)
+        reward = USUAL.of(Transition(before, now, nearer, scenario.robot.max_speed, outcome))
         truncated = outcome == "timeout"
         told = {
             "reward": reward.parts(),

@@ -1,6 +1,8 @@
 """Q-learning and Q(λ), training and policies; it knows nothing of robots."""
 
-from fuzzyq_bullet.learning.learners import Features, LinearQLambda, QLambda, QLearning
+from fuzzyq_bullet.learning.choices import epsilon_greedy, greedy
+from fuzzyq_bullet.learning.fuzzy import FuzzyQLambda
+from fuzzyq_bullet.learning.learners import QLambda, QLearning
 from fuzzyq_bullet.learning.policy import Policy, PolicySpec, load_policy
 from fuzzyq_bullet.learning.schedules import (
     EXPLORATION,
@@ -14,8 +16,6 @@ from fuzzyq_bullet.learning.training import (
     Problem,
     Setup,
     episode_rng,
-    epsilon_greedy,
-    greedy,
     train,
 )
 
@@ -24,9 +24,8 @@ __all__ = [
     "LEARNING_RATE",
     "TABLE_1",
     "TRACE_DECAY",
-    "Features",
+    "FuzzyQLambda",
     "Learner",
-    "LinearQLambda",
     "Policy",
     "PolicySpec",
     "Problem",

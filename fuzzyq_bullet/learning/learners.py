@@ -1,20 +1,16 @@
-"""The learners: Q-learning (Eq. 7), Watkins's Q(λ) (Eqs. 18 and 19), in a table or with features.
+"""The learners with a table: Q-learning (Eq. 7) and Watkins's Q(λ) (Eqs. 18 and 19).
 
-In a table states are the numbers 0 … S−1, actions 0 … A−1. With linear function approximation a
-state is a set of ``Features``: Q(s, a) = Σ φ_i(s)·w_i(a). Every action has one weight for each
-feature, so ∂Q(s, a)/∂w(a) = φ(s): the gradient of Eqs. 18 and 19 that a table does not have. With
-one-hot features it is the same as a table.
+States are the numbers 0 … S−1, actions 0 … A−1.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzyq_bullet.learning.choices import epsilon_greedy
 from fuzzyq_bullet.learning.schedules import TABLE_1
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -43,6 +39,12 @@ class QLearning:
     def values(self, state: int) -> list[float]:
         """Return Q(s, ·), shape (A,), to look at."""
         return self._q[state]
+
+    def choose(
+        self, state: int, epsilon: float, rng: np.random.Generator, *, random_ties: bool = False
+    ) -> int:
+        """Choose an action ε-greedily."""
+        return epsilon_greedy(self._q[state], epsilon, rng, random_ties=random_ties)
 
     def learn(self, state: int, action: int, reward: float, after: int | None) -> float:
         """Learn from one step (Eq. 7).
@@ -138,123 +140,3 @@ class QLambda(QLearning):
     def describe(self) -> dict[str, str | float]:
         """Return what it takes to build such a learner, beside its table."""
         return {"learner": "q-lambda", "discount": self.discount, "traces": self.kind}
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Features:
-    """φ(s): which features a state has, and to what degree.
-
-    They should sum to 1, so that Q is a weighted mean of the weights and the learning rate means
-    the same in every state. With Σ φ² > 2/α learning cannot converge.
-
-    Attributes:
-        indices: Numbers of the features that are not 0, shape (K,), none twice.
-        values: Their degrees φ_i > 0, shape (K,).
-    """
-
-    indices: NDArray[np.intp]
-    values: Floats
-
-    @classmethod
-    def of(cls, degrees: Sequence[float] | Floats) -> Features:
-        """Take the features from all F degrees, shape (F,), most of which may be 0.
-
-        Raises:
-            ValueError: If one is negative or not finite.
-        """
-        dense = np.asarray(degrees, dtype=np.float64)
-        if not ((dense >= 0.0) & (dense < np.inf)).all():
-            raise ValueError("features must be finite and at least 0")
-        indices = np.flatnonzero(dense)
-        return cls(indices, dense[indices])
-
-    @classmethod
-    def one_hot(cls, index: int) -> Features:
-        """Return the state that is feature ``index`` and nothing else."""
-        return cls(np.array([index], dtype=np.intp), np.ones(1))
-
-
-class LinearQLambda:
-    """Watkins's Q(λ) with linear function approximation.
-
-    Attributes:
-        discount: γ of Eqs. 18 and 19.
-        kind: ``accumulating``: e(a) + φ, as the equations say; or ``replacing``: e_i(a) becomes
-            φ_i where that is more.
-    """
-
-    def __init__(
-        self,
-        features: int,
-        actions: int,
-        *,
-        discount: float = TABLE_1.discount,
-        kind: TraceKind = "accumulating",
-    ) -> None:
-        self.discount = discount
-        self.kind = kind
-        self._w = np.full((features, actions), TABLE_1.initial_value)
-        self._traces = np.full((features, actions), TABLE_1.initial_trace)
-        self._rate = 0.0
-        self._fade = 0.0
-
-    def begin(self, rate: float, trace_decay: float) -> None:
-        """Begin an episode with the learning rate η and trace decay λ: all traces are 0."""
-        self._rate = rate
-        self._fade = self.discount * trace_decay
-        self._traces.fill(TABLE_1.initial_trace)
-
-    def values(self, state: Features) -> list[float]:
-        """Return Q(s, ·), shape (A,)."""
-        # Multiplied and added row by row: matrix products round differently on other processors.
-        rows = self._w[state.indices] * state.values[:, np.newaxis]
-        values: list[float] = np.add.reduce(rows).tolist()
-        return values
-
-    def learn(self, state: Features, action: int, reward: float, after: Features | None) -> float:
-        """Learn from one step (Eqs. 18 and 19 with the gradient φ).
-
-        Args:
-            state: φ(s), where it was.
-            action: a, what it did there.
-            reward: r, what that earned.
-            after: φ(s'), where it led to; None if the episode is over.
-
-        Returns:
-            δ, the error that was found.
-        """
-        values = self.values(state)
-        best = 0.0 if after is None else max(self.values(after))
-        delta = reward + self.discount * best - values[action]
-
-        traces = self._traces
-        traces *= self._fade if values[action] == max(values) else 0.0
-        traces[traces <= FAINT] = 0.0
-        own = traces[:, action]
-        if self.kind == "accumulating":
-            own[state.indices] += state.values
-        else:
-            own[state.indices] = np.maximum(own[state.indices], state.values)
-
-        self._w += (self._rate * delta) * traces
-        return delta
-
-    @property
-    def table(self) -> Floats:
-        """The weights w, shape (F, A): a copy to read; assign to it to go on from others."""
-        return self._w.copy()
-
-    @table.setter
-    def table(self, table: Floats) -> None:
-        if table.shape != self._w.shape:
-            raise ValueError(f"a table of shape {table.shape} for a learner of {self._w.shape}")
-        self._w = np.array(table, dtype=np.float64)
-
-    @property
-    def traces(self) -> Floats:
-        """The traces e, shape (F, A): a copy."""
-        return self._traces.copy()
-
-    def describe(self) -> dict[str, str | float]:
-        """Return what it takes to build such a learner, beside its table."""
-        return {"learner": "linear-q-lambda", "discount": self.discount, "traces": self.kind}

@@ -118,8 +118,8 @@ class Policy(BaseModel):
     Attributes:
         format: Of the file; other formats are refused.
         planner: Name of the planner that it was trained for.
-        learner: What learned it: ``q-learning``, ``q-lambda`` or ``linear-q-lambda``. The rows of
-            the last are the weights of features, and its ``states`` name those.
+        learner: What learned it: ``q-learning``, ``q-lambda``, or ``fuzzy-q-lambda``, whose rows
+            are rules and not states.
         command: What to type to make it again.
         seed: Seed of the training.
         version: Version of fuzzyq_bullet.

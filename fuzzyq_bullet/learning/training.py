@@ -6,7 +6,7 @@ It can be interrupted anywhere and resumed exactly.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol, TypeVar
@@ -24,11 +24,13 @@ _CHOICES = 0
 """The random stream of an episode that chooses actions; a problem takes others."""
 
 State = TypeVar("State")
+Action = TypeVar("Action")
 StateOut = TypeVar("StateOut", covariant=True)
 StateIn = TypeVar("StateIn", contravariant=True)
+ActionIn = TypeVar("ActionIn", contravariant=True)
 
 
-class Problem(Protocol[StateOut]):
+class Problem(Protocol[StateOut, ActionIn]):
     """A Markov decision process to be learned in episodes.
 
     Nothing may be carried from one episode into the next, and all chance must come from the
@@ -40,7 +42,7 @@ class Problem(Protocol[StateOut]):
         """Begin an episode, counted from 1, and return its first state."""
         ...
 
-    def step(self, action: int, /) -> tuple[StateOut, float, bool]:
+    def step(self, action: ActionIn, /) -> tuple[StateOut, float, bool]:
         """Do an action.
 
         Returns:
@@ -56,24 +58,28 @@ class Problem(Protocol[StateOut]):
         ...
 
 
-class Learner(Protocol[StateIn]):
-    """Learns the values of actions."""
+class Learner(Protocol[StateIn, Action]):
+    """Learns the values of actions: of one at a time, or of one for each rule."""
 
     def begin(self, rate: float, trace_decay: float) -> None:
         """Begin an episode with the learning rate α and trace decay λ; all traces are 0."""
         ...
 
-    def values(self, state: StateIn, /) -> Sequence[float]:
-        """Return Q(s, ·), shape (A,)."""
+    def choose(
+        self, state: StateIn, epsilon: float, rng: np.random.Generator, *, random_ties: bool = False
+    ) -> Action:
+        """Choose ε-greedily: with the chance ``epsilon`` any action, else the best."""
         ...
 
-    def learn(self, state: StateIn, action: int, reward: float, after: StateIn | None, /) -> float:
+    def learn(
+        self, state: StateIn, action: Action, reward: float, after: StateIn | None, /
+    ) -> float:
         """Learn from one step and return its error δ; ``after`` is None when the task is over."""
         ...
 
     @property
     def table(self) -> Floats:
-        """All that was learned, shape (S, A) or (F, A); may be assigned."""
+        """All that was learned, shape (S, A); may be assigned."""
         ...
 
     @table.setter
@@ -137,43 +143,9 @@ def episode_rng(seed: int, episode: int, stream: int) -> np.random.Generator:
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(episode, stream)))
 
 
-def greedy(values: Sequence[float], rng: np.random.Generator | None = None) -> int:
-    """Return the number of the best action.
-
-    Args:
-        values: Q(s, ·), one value an action.
-        rng: Chooses among equals; without it the first of them is taken.
-    """
-    best = max(values)
-    if rng is None:
-        return values.index(best)
-    equals = [action for action, value in enumerate(values) if value == best]
-    return equals[int(rng.integers(len(equals)))] if len(equals) > 1 else equals[0]
-
-
-def epsilon_greedy(
-    values: Sequence[float],
-    epsilon: float,
-    rng: np.random.Generator,
-    *,
-    random_ties: bool = False,
-) -> int:
-    """Explore: return any action with the chance ``epsilon``, else the best.
-
-    Args:
-        values: Q(s, ·), one value an action.
-        epsilon: ε, the chance (0 to 1) of an action drawn from all, the best included.
-        rng: The episode's own generator.
-        random_ties: Whether equals are drawn from too; else the first of them is taken.
-    """
-    if rng.random() < epsilon:
-        return int(rng.integers(len(values)))
-    return greedy(values, rng if random_ties else None)
-
-
 def train(
-    problem: Problem[State],
-    learner: Learner[State],
+    problem: Problem[State, Action],
+    learner: Learner[State, Action],
     setup: Setup,
     *,
     made: Mapping[str, Plain] | None = None,
@@ -231,7 +203,7 @@ def train(
 
 
 def _play(
-    problem: Problem[State], learner: Learner[State], setup: Setup, episode: int
+    problem: Problem[State, Action], learner: Learner[State, Action], setup: Setup, episode: int
 ) -> tuple[float, int, bytes]:
     """Play one episode, learning all the way, and return its row of the curve."""
     rng = episode_rng(setup.seed, episode, _CHOICES)
@@ -242,7 +214,7 @@ def _play(
     state = problem.reset(episode)
     total, steps, over = 0.0, 0, False
     while not over and steps < setup.max_steps:
-        action = epsilon_greedy(learner.values(state), epsilon, rng, random_ties=setup.random_ties)
+        action = learner.choose(state, epsilon, rng, random_ties=setup.random_ties)
         after, reward, over = problem.step(action)
         learner.learn(state, action, reward, None if over else after)
         state = after

@@ -2,7 +2,9 @@
 
 They are the direct baselines of the paper's comparison, which only names them. Here a state tells
 how far each of three detection lines is free, an action is one of five headings relative to the
-line to the goal, and all steps have the same length (``docs/learning.md``).
+line to the goal, and all steps have the same length (``docs/learning.md``). With ``guard`` and
+``breakout`` the safety filter and the ways out of the improved planners come beside the table,
+which is then asked on the way to temporary goals too.
 """
 
 from __future__ import annotations
@@ -14,9 +16,12 @@ from itertools import product
 from typing import NamedTuple
 
 from fuzzyq_bullet.learning import Policy, PolicySpec, greedy
+from fuzzyq_bullet.planning.aim import Aim, towards_goal
 from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.planning.settings import PolicySettings
+from fuzzyq_bullet.planning.escape import Escape
+from fuzzyq_bullet.planning.safety_filter import safety_filter
+from fuzzyq_bullet.planning.settings import DirectSettings
 
 LINE_ANGLE = math.radians(45.0)
 """Angle of the left and right lines from the middle one (rad), as in the fuzzy planners."""
@@ -62,16 +67,14 @@ class Sensed(NamedTuple):
     """What the detection lines tell.
 
     Attributes:
-        bearing: World heading of the goal, and of the middle line (rad).
-        to_goal: Distance to the centre of the goal (m).
+        aim: What the middle line points at: the goal, or a temporary goal.
         lines: World headings of the left, middle and right lines (rad), shape (3,).
         lengths: Their free lengths (m), shape (3,).
         state: Number of the state.
         unit: S_p, the length of every step but the last one, to the goal (m).
     """
 
-    bearing: float
-    to_goal: float
+    aim: Aim
     lines: tuple[float, float, float]
     lengths: Sequence[float]
     state: int
@@ -92,24 +95,26 @@ def state_of(lengths: Sequence[float], unit: float = STEP_UNIT) -> int:
     return state
 
 
-def sense(observation: Observation) -> Sensed:
-    """Cast the three lines. What stands behind the goal is not in the way."""
-    dx = observation.goal[0] - observation.position[0]
-    dy = observation.goal[1] - observation.position[1]
-    to_goal = math.hypot(dx, dy)
-    bearing = math.atan2(dy, dx)
-    lines = (bearing + LINE_ANGLE, bearing, bearing - LINE_ANGLE)
+def sense(observation: Observation, aim: Aim | None = None) -> Sensed:
+    """Cast the three lines. What stands behind the aim is not in the way.
+
+    Args:
+        observation: What is observed.
+        aim: What the middle line points at; by default the goal.
+    """
+    aim = aim or towards_goal(observation)
+    lines = (aim.bearing + LINE_ANGLE, aim.bearing, aim.bearing - LINE_ANGLE)
     left, middle, right = lengths = observation.sense(lines)
-    counted = (left, math.inf if middle >= to_goal else middle, right)
+    counted = (left, math.inf if middle >= aim.distance else middle, right)
     unit = observation.unit
-    return Sensed(bearing, to_goal, lines, lengths, state_of(counted, unit), unit)
+    return Sensed(aim, lines, lengths, state_of(counted, unit), unit)
 
 
 def act(sensed: Sensed, action: int) -> Decision:
     """Return the step of an action. No safety filter follows."""
     return Decision(
-        heading=sensed.bearing + ACTIONS[action].turn,
-        step=min(sensed.unit, sensed.to_goal),
+        heading=sensed.aim.bearing + ACTIONS[action].turn,
+        step=min(sensed.unit, sensed.aim.distance),
         lines=sensed.lines,
         lengths=sensed.lengths,
     )
@@ -126,11 +131,33 @@ class DirectPlanner:
         UserError: If the policy is that of something else.
     """
 
-    def __init__(self, settings: PolicySettings, policy: Policy) -> None:
+    def __init__(self, settings: DirectSettings, policy: Policy) -> None:
         POLICY_SPECS[settings.name].check(policy, f"the policy given to {settings.name}")
         self._best = [greedy(row) for row in policy.table]
+        self._escape = Escape() if settings.breakout else None
+        self._settings = settings
 
     def decide(self, observation: Observation, /) -> Decision:
         """Return a step along the best heading."""
-        sensed = sense(observation)
-        return act(sensed, self._best[sensed.state])
+        if self._escape is None:
+            sensed = sense(observation)
+            decision = act(sensed, self._best[sensed.state])
+        else:
+            aim = self._escape.aim(observation, self._settings.breakout_at)
+            sensed = sense(observation, aim)
+            decision = _towards(aim, act(sensed, self._best[sensed.state]))
+        return safety_filter(decision, observation) if self._settings.guard else decision
+
+
+def _towards(aim: Aim, decision: Decision) -> Decision:
+    """Return a decision on the way to an aim; a gap that must be met exactly is aimed at."""
+    return decision._replace(
+        heading=aim.bearing if aim.exact else decision.heading,
+        step=0.0 if aim.hopeless else decision.step,
+        reach=aim.reach,
+        mode=aim.mode,
+        target=aim.target,
+        aim=aim.point,
+        exact=float(aim.exact),
+        hopeless=aim.hopeless,
+    )

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, Strict
 
 _Number: TypeAlias = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 Weight: TypeAlias = Annotated[_Number, Field(gt=0.0, le=20.0)]
+BreakoutAt: TypeAlias = Annotated[_Number, Field(gt=0.0, le=5.0)]
 
 
 class PlannerSettings(BaseModel):
@@ -66,7 +67,7 @@ class RecoverySettings(RoutineSettings):
     breakout: Annotated[bool, Strict()] = Field(
         default=True, description="Whether it breaks out of dead ends (4.2)."
     )
-    breakout_at: Annotated[_Number, Field(gt=0.0, le=5.0)] = Field(
+    breakout_at: BreakoutAt = Field(
         default=1.0,
         description="c_f in S_p: with less than this free towards the goal, it breaks out.",
     )
@@ -100,15 +101,36 @@ class FuzzyQLambdaSettings(PolicySettings, RecoverySettings):
     """The paper's own planner: the improved one, with weights that were learned."""
 
     name: Literal["fuzzy-q-lambda"] = "fuzzy-q-lambda"
+    breakout_at: BreakoutAt = Field(
+        default=4.0,
+        description="c_f in S_p: with less than this free towards the goal, it breaks out.",
+    )
 
 
-class QLearningSettings(PolicySettings):
+class DirectSettings(PolicySettings):
+    """Parameters of the direct baselines, which have neither safety filter nor ways out as such."""
+
+    guard: Annotated[bool, Strict()] = Field(
+        default=False,
+        description="Whether the safety filter limits how far it goes to what is free.",
+    )
+    breakout: Annotated[bool, Strict()] = Field(
+        default=False,
+        description="Whether it breaks out of dead ends (4.2) and follows large obstacles (4.3).",
+    )
+    breakout_at: BreakoutAt = Field(
+        default=1.0,
+        description="c_f in S_p: with less than this free towards the goal, it breaks out.",
+    )
+
+
+class QLearningSettings(DirectSettings):
     """The direct Q-learning baseline (Eq. 7)."""
 
     name: Literal["q-learning"] = "q-learning"
 
 
-class QLambdaSettings(PolicySettings):
+class QLambdaSettings(DirectSettings):
     """The direct Q(λ) baseline (Eq. 18)."""
 
     name: Literal["q-lambda"] = "q-lambda"

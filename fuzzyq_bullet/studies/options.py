@@ -19,13 +19,18 @@ from fuzzyq_bullet.planning import (
 )
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.registry import no_planner
-from fuzzyq_bullet.planning.settings import PolicySettings
+from fuzzyq_bullet.planning.settings import PolicySettings, QLambdaSettings, QLearningSettings
 from fuzzyq_bullet.scenario import MAX_OBSTACLES, Drive
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 NONE = "none"
 PAPER = ("fuzzy", "improved-fuzzy", "q-learning", "q-lambda", "fuzzy-q-lambda")
 """The planners of Fig. 13 and Table 5, in the order in which they are shown."""
+GUARDED = {
+    "q-learning-guarded": QLearningSettings(guard=True, breakout=True),
+    "q-lambda-guarded": QLambdaSettings(guard=True, breakout=True),
+}
+"""The direct planners with the safety filter and the ways out of the improved ones."""
 _EXPECTED = {**q_learning.POLICY_SPECS, "fuzzy-q-lambda": fuzzy_q_lambda.POLICY_SPEC}
 
 
@@ -117,17 +122,18 @@ def planners_of(names: str | Iterable[str]) -> dict[str, PlannerSettings]:
     """Return planners as they are set by default, each once, by their names.
 
     Args:
-        names: Such as ``fuzzy,q-learning``.
+        names: Such as ``fuzzy,q-learning``; those of ``GUARDED`` are known too.
 
     Raises:
         UserError: If there is no such planner.
     """
-    chosen = {}
+    chosen: dict[str, PlannerSettings] = {}
     for part in names.split(",") if isinstance(names, str) else names:
         name = part.strip()
-        if name not in planner_names():
+        if name not in planner_names() and name not in GUARDED:
             raise UserError(f"--planners: {no_planner(name)}")
-        chosen[name] = settings_for(name).model_validate({"name": name})
+        usual = GUARDED.get(name)
+        chosen[name] = usual or settings_for(name).model_validate({"name": name})
     return chosen
 
 

@@ -1,7 +1,8 @@
 """Fixed weights that learned ones are held against, and which of them are best.
 
-They are all that learning may choose, and more: a search over fewer values than the learned planner
-has would let it win for having more of them. They are tried on a training's environments.
+They are what a rule may choose, and more, with c_f, which no rule chooses: a search over fewer
+values than the learned planner has would let it win for having more of them. They are tried on a
+training's environments.
 
 The best are safe first, then sure, then fast. Times are compared over the same environments for all
 that are left by then: otherwise weights would look fast that fail where the way is long.
@@ -13,12 +14,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product, starmap
 from statistics import fmean
+from typing import NamedTuple
 
 from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
-from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, STEPS, TURNS, Weights
 from fuzzyq_bullet.scenario import Drive, Limits
 from fuzzyq_bullet.studies.episodes import Environment, Row
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
@@ -29,29 +30,33 @@ from fuzzyq_bullet.training.registry import recipe_of
 USUAL_BREAKOUT = ImprovedFuzzySettings().breakout_at
 """c_f in S_p of a planner that is told nothing else."""
 
-MORE_STEPS = (0.5, 1.0, 1.5, 2.0)
-MORE_TURNS = (0.25, 0.5, 1.0, 1.5)
-MORE_BREAKOUTS = (2.0, 3.0, 5.0)
+
+class Weights(NamedTuple):
+    """Weights that stay the same for a whole run.
+
+    Attributes:
+        step: ω1 of Eq. 17.
+        turn: ω2 of Eq. 17.
+        breakout_at: c_f in S_p: with less than this free towards the goal, it breaks out.
+    """
+
+    step: float
+    turn: float
+    breakout_at: float
+
 
 HALF = Weights(0.5, 0.5, USUAL_BREAKOUT)
 """What the paper calls the optimum that it found."""
 ONE = Weights(1.0, 1.0, USUAL_BREAKOUT)
 """What the controller says, as it says it."""
 
-PAIRS: tuple[Weights, ...] = tuple(
-    dict.fromkeys(
-        (
-            HALF,
-            ONE,
-            *(Weights(*pair, USUAL_BREAKOUT) for pair in product(STEPS, TURNS)),
-            *(Weights(*pair, USUAL_BREAKOUT) for pair in product(MORE_STEPS, MORE_TURNS)),
-        )
-    )
+PAIRS = (
+    HALF,
+    ONE,
+    *starmap(Weights, product((2.0, 5.0, 10.0, 20.0), (0.1, 0.25, 0.5, 1.0), (USUAL_BREAKOUT,))),
 )
-"""(ω1, ω2) with the usual c_f: those that learning chooses from, and more around them."""
-TRIPLES: tuple[Weights, ...] = tuple(
-    dict.fromkeys((*PAIRS, *ACTIONS, *starmap(Weights, product(STEPS, TURNS, MORE_BREAKOUTS))))
-)
+"""(ω1, ω2) with the usual c_f."""
+TRIPLES = (*PAIRS, *starmap(Weights, product((5.0, 10.0, 20.0), (0.1, 0.25, 0.5), (2.5, 4.0))))
 """(ω1, ω2, c_f): the pairs too, so that the best triple is never worse than the best pair there."""
 
 
@@ -98,7 +103,10 @@ class SearchPlan(Plan):
         tasks = recipe_of("fuzzy-q-lambda").tasks(self.drive, self.training_seed)
         for episode in range(1, self.episodes + 1):
             scenario = tasks.scenario_of(episode)
-            yield Environment("scatter", len(scenario.obstacles), episode, scenario.seed)
+            if tasks.is_corridor(episode):
+                yield Environment("cellular", None, episode, scenario.seed)
+            else:
+                yield Environment("scatter", len(scenario.obstacles), episode, scenario.seed)
 
     def schedule(self) -> Iterator[Episode]:
         """Yield all episodes, those of one environment one after the other."""

@@ -7,27 +7,30 @@ decision earns.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+
+import numpy as np
 
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.ground_truth.distance_field import DistanceField
-from fuzzyq_bullet.learning.learners import Features
+from fuzzyq_bullet.learning.learners import Floats
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, OptionTermination, features_of
+from fuzzyq_bullet.planning.fuzzy_q_lambda import CHOICES, firing, weighed
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.q_learning import act, sense
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.scenario.models import Limits, Start
-from fuzzyq_bullet.training.rewards import Reward
+from fuzzyq_bullet.training.rewards import USUAL, Reward, RewardSettings, Transition
 from fuzzyq_bullet.training.tasks import Tasks
 
 PATIENCE = 10.0
 """How long the robot may stay at one place before the episode ends as stuck (s)."""
-MOST_LOST = 5.0
-"""Greatest delay that counts for one option (s), because most of a longer search is chance."""
+HOLD = 6
+"""Decisions for which the rules stand by what they chose: 0.3 s."""
 
 
 class TrainingEpisode:
@@ -40,10 +43,19 @@ class TrainingEpisode:
             put back.
         true_progress: Whether progress is measured along the true shortest path, which no planner
             knows, instead of the straight line to the goal.
+        reward: What a decision earns.
     """
 
-    def __init__(self, tasks: Tasks, *, hits_end: bool = True, true_progress: bool = False) -> None:
+    def __init__(
+        self,
+        tasks: Tasks,
+        *,
+        hits_end: bool = True,
+        true_progress: bool = False,
+        reward: RewardSettings = USUAL,
+    ) -> None:
         self._tasks = tasks
+        self._reward = reward
         self._hits_end = hits_end
         self._true_progress = true_progress
         self._engine: Engine | None = None
@@ -58,7 +70,7 @@ class TrainingEpisode:
         )
         self._episode = Episode(self._world, scenario, patience=PATIENCE)
         self._distances = DistanceField(scenario) if self._true_progress else None
-        self._left = self._to_goal(self._episode.now)
+        self._left = self._to_goal_now()
         self._decided = 0
         self._hit = False
 
@@ -74,13 +86,18 @@ class TrainingEpisode:
         now, outcome = self._episode.now, self._episode.outcome
         if outcome == "collision" and not self._hits_end:
             self._put_back(before)
-        self._left = self._to_goal(self._episode.now)
-        return Reward.of(
-            seconds=now.time - before.time,
-            nearer=left - self._left,
-            max_speed=self._scenario.robot.max_speed,
-            outcome=outcome,
-        )
+        self._left = self._to_goal_now()
+        max_speed = self._scenario.robot.max_speed
+        return self._reward.of(Transition(before, now, left - self._left, max_speed, outcome))
+
+    @property
+    def potential(self) -> float:
+        """Φ: minus the time that what is left of the way takes at full speed (s).
+
+        0 with a reward of the user's own, which says itself what counts.
+        """
+        counts = 0.0 if self._reward.own else self._reward.progress
+        return -counts * self._left / self._scenario.robot.max_speed
 
     @property
     def over(self) -> bool:
@@ -92,11 +109,14 @@ class TrainingEpisode:
         """How the episode stands; ``collision`` once anything was hit, whatever came after."""
         return "collision" if self._hit else self._episode.outcome or "going on"
 
-    def _to_goal(self, tick: RobotState) -> float:
-        """Return the distance to the goal that is left (m)."""
+    def to_goal(self, x: float, y: float) -> float:
+        """Return the distance to the goal from a point (m): true, or straight."""
         if self._distances is not None:
-            return self._distances.at(tick.x, tick.y)
-        return math.dist((tick.x, tick.y), self._scenario.goal.position)
+            return self._distances.at(x, y)
+        return math.dist((x, y), self._scenario.goal.position)
+
+    def _to_goal_now(self) -> float:
+        return self.to_goal(self._episode.now.x, self._episode.now.y)
 
     def _put_back(self, tick: RobotState) -> None:
         """Go on from an earlier tick, unless the episode's time or decisions are used up."""
@@ -124,10 +144,11 @@ class DirectProblem:
 
     Args:
         tasks: Where it is learned.
+        reward: What a decision earns.
     """
 
-    def __init__(self, tasks: Tasks) -> None:
-        self._episode = TrainingEpisode(tasks, hits_end=False)
+    def __init__(self, tasks: Tasks, *, reward: RewardSettings = USUAL) -> None:
+        self._episode = TrainingEpisode(tasks, hits_end=False, reward=reward)
 
     def reset(self, episode: int, /) -> int:
         """Begin an episode."""
@@ -149,49 +170,59 @@ class DirectProblem:
         return self._sensed.state
 
 
-class WeightsProblem:
+class RuleWeightsProblem:
     """The problem that ``fuzzy-q-lambda`` learns (``learning.Problem``).
 
-    States and actions are those of ``planning.fuzzy_q_lambda``, the reward is ``training.rewards``
-    with progress along the true shortest path.
+    States are the shares of the rules in all that fires, actions a choice of weights for each rule,
+    which stands for ``HOLD`` decisions: the effect of a turn shows a while later. The reward of
+    such a step is minus the seconds that it took, penalties, and γΦ(s') − Φ(s) with Φ minus the
+    time that the true shortest path would take at full speed: this leaves the best behaviour as it
+    is (potential-based shaping). With γ = 1 it is minus the delay, in seconds.
+
+    Ways out are chosen by the truth about where they lead. What a wrong one costs is no rule's
+    fault, and is so much more than what any weights gain that it would drown that: the return of
+    an episode has a standard deviation of 1.7 s instead of 10.9 s.
 
     Args:
         tasks: Where it is learned.
+        discount: γ.
+        reward: What a decision earns.
     """
 
-    def __init__(self, tasks: Tasks) -> None:
-        self._episode = TrainingEpisode(tasks, true_progress=True)
+    def __init__(self, tasks: Tasks, *, discount: float, reward: RewardSettings = USUAL) -> None:
+        self._episode = TrainingEpisode(tasks, true_progress=True, reward=reward)
+        self._discount = discount
 
-    def reset(self, episode: int, /) -> Features:
+    def reset(self, episode: int, /) -> Floats:
         """Begin an episode."""
         self._episode.begin(episode)
         self._planner = ImprovedFuzzyBase(FuzzyQLambdaSettings())
-        self._option = OptionTermination()
+        self._planner.know(self._episode.to_goal)
         self._look()
-        return features_of(self._situation)
+        return firing(self._situation.inferred)
 
-    def step(self, action: int, /) -> tuple[Features, float, bool]:
-        """Drive with the weights of an action until its option ends."""
-        weights, lost, fate = ACTIONS[action], 0.0, 0.0
-        while True:
-            decision = self._planner.act(
-                self._observation, self._situation, weights[:2], weights.breakout_at
+    def step(self, choices: Sequence[int], /) -> tuple[Floats, float, bool]:
+        """Drive ``HOLD`` decisions with the weights that each rule chose."""
+        weights = np.array([CHOICES[choice] for choice in choices])
+        before, spent = self._episode.potential, 0.0
+        for _ in range(HOLD):
+            used = weighed(firing(self._situation.inferred), weights)
+            reward = self._episode.advance(
+                self._planner.act(self._observation, self._situation, used)
             )
-            reward = self._episode.advance(decision)
-            lost += reward.time + reward.progress
-            fate += reward.contact + reward.given_up
-            if self._look() or self._episode.over:
-                earned = max(lost, -MOST_LOST) + fate
-                return features_of(self._situation), earned, self._episode.over
+            spent += reward.unshaped
+            self._look()
+            if self._episode.over:
+                break
+        earned = spent + self._discount * self._episode.potential - before
+        return firing(self._situation.inferred), earned, self._episode.over
 
     @property
     def outcome(self) -> str:
         """How the episode stands."""
         return self._episode.outcome
 
-    def _look(self) -> bool:
-        """Observe where the robot is now, and return whether the option ends here."""
+    def _look(self) -> None:
+        """Observe where the robot is now."""
         self._observation = self._episode.observe()
-        self._situation = seen = self._planner.sense(self._observation)
-        mode = self._planner.mode
-        return self._option.ends(seen.to_goal, mode, clear=seen.clear, unit=seen.unit)
+        self._situation = self._planner.sense(self._observation)

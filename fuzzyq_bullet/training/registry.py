@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import (
+    FuzzyQLambda,
     Learner,
-    LinearQLambda,
     Policy,
     PolicySpec,
     Problem,
@@ -22,18 +23,21 @@ from fuzzyq_bullet.learning import (
     train,
 )
 from fuzzyq_bullet.learning.checkpoint import Curve
-from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC as WEIGHTS
+from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC as RULE_WEIGHTS
+from fuzzyq_bullet.planning.fuzzy_q_lambda import TWINS
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS as DIRECT
 from fuzzyq_bullet.scenario import Drive, Scenario
-from fuzzyq_bullet.training.problems import DirectProblem, WeightsProblem
+from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
+from fuzzyq_bullet.training.problems import DirectProblem, RuleWeightsProblem
 from fuzzyq_bullet.training.tasks import COUNTS, Tasks
 from fuzzyq_bullet.version import __version__
 
-EAGER = Schedule(0.9, 0.4)
-"""ε of ``fuzzy-q-lambda``: 0.9 − 0.4·(i/N). Q(λ) learns the values of the best actions whatever it
-tries, and an action that looked bad by chance must be tried again."""
-SPARSE = (25, 50)
-"""Numbers of obstacles. With more, the time that an escape takes hides the effect of a choice."""
+TRACE = Schedule(0.9)
+"""λ of ``fuzzy-q-lambda``: what a turn leads to shows seconds later, which is ten steps."""
+UNDISCOUNTED = 1.0
+"""γ of ``fuzzy-q-lambda``: a second lost late is worth as much as one lost early."""
+ALL_COUNTS = (25, 50, 75, 100, 125)
+"""Numbers of obstacles that ``fuzzy-q-lambda`` learns on, taken in turn."""
 
 
 @dataclass(frozen=True)
@@ -43,22 +47,26 @@ class Recipe:
     Attributes:
         planner: Its name.
         spec: What its policies look like: states, actions, learner.
-        problem: Builds the learning problem from the tasks to learn it on.
-        learner: Builds the learner.
+        problem: Builds the learning problem from the tasks to learn it on; where a user asks for
+            another than usual, also from ``reward`` (``RewardSettings``) and ``discount``, if it
+            takes these.
+        learner: Builds the learner; from ``discount`` too, if it takes that and a user asks for it.
         setup: Builds the schedules from the number of episodes and the seed.
         counts: Numbers of obstacles of the random scenarios.
+        cellular: Whether it learns in corridors of clumped pillars too.
     """
 
     planner: str
     spec: PolicySpec
-    problem: Callable[[Tasks], Problem[Any]]
-    learner: Callable[[], Learner[Any]]
+    problem: Callable[..., Problem[Any, Any]]
+    learner: Callable[..., Learner[Any, Any]]
     setup: Callable[[int, int], Setup]
     counts: tuple[int, ...] = COUNTS
+    cellular: bool = False
 
     def tasks(self, drive: Drive, seed: int, scenario: Scenario | None = None) -> Tasks:
         """Return what it learns on."""
-        return Tasks(drive=drive, seed=seed, counts=self.counts, scenario=scenario)
+        return Tasks(drive, seed, self.counts, self.cellular, scenario)
 
 
 RECIPES: dict[str, Recipe] = {}
@@ -113,11 +121,18 @@ for _planner, _learner in (("q-learning", QLearning), ("q-lambda", QLambda)):
 register_recipe(
     Recipe(
         planner="fuzzy-q-lambda",
-        spec=WEIGHTS,
-        problem=WeightsProblem,
-        learner=lambda: LinearQLambda(*WEIGHTS.shape),
-        setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, exploration=EAGER),
-        counts=SPARSE,
+        spec=RULE_WEIGHTS,
+        problem=partial(RuleWeightsProblem, discount=UNDISCOUNTED),
+        learner=partial(
+            FuzzyQLambda,
+            *RULE_WEIGHTS.shape,
+            discount=UNDISCOUNTED,
+            kind="replacing",
+            twins=TWINS,
+        ),
+        setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, trace_decay=TRACE),
+        counts=ALL_COUNTS,
+        cellular=True,
     )
 )
 
@@ -139,6 +154,7 @@ def learn(
     setup: Setup,
     *,
     command: str,
+    options: LearningOptions = AS_USUAL,
     checkpoint: Path | None = None,
     resume: bool = False,
     on_episode: Callable[[Curve], None] | None = None,
@@ -150,6 +166,7 @@ def learn(
         tasks: What it learns on.
         setup: For how long, and how fast.
         command: What to type to do this again; the policy keeps it.
+        options: Discount and reward, if others than usual.
         checkpoint: Where to keep how far it is after every episode.
         resume: Whether to go on from there.
         on_episode: Called after every episode with the learning curve so far.
@@ -158,12 +175,14 @@ def learn(
         The policy and the learning curve.
 
     Raises:
-        UserError: As ``learning.train``.
+        UserError: As ``learning.train``; or if a discount or reward is given, and it takes none.
     """
-    learner = recipe.learner()
+    learner, problem = _built(recipe, tasks, options)
     made = {"planner": recipe.planner, "drive": tasks.drive, "tasks": tasks.digest()}
+    if options.reward is not None:
+        made["reward"] = str(options.reward)
     curve = train(
-        recipe.problem(tasks),
+        problem,
         learner,
         setup,
         made=made,
@@ -172,6 +191,8 @@ def learn(
         on_episode=on_episode,
     )
     described = {**setup.describe(), **learner.describe()}
+    if options.reward is not None:
+        described["reward"] = made["reward"]
     policy = Policy(
         planner=recipe.planner,
         learner=str(described.pop("learner")),
@@ -187,3 +208,19 @@ def learn(
         table=learner.table.tolist(),
     )
     return policy, curve
+
+
+def _built(
+    recipe: Recipe, tasks: Tasks, options: LearningOptions
+) -> tuple[Learner[Any, Any], Problem[Any, Any]]:
+    """Build learner and problem, with what is asked for and what they take."""
+    asked = {"discount": options.discount, "reward": options.reward}
+    asked = {name: value for name, value in asked.items() if value is not None}
+    parts = []
+    for function, about in ((recipe.learner, ("discount",)), (recipe.problem, tuple(asked))):
+        taken = signature(function).parameters
+        parts.append({name: asked[name] for name in asked if name in about and name in taken})
+    for name in asked:
+        if not any(name in part for part in parts):
+            raise UserError(f"--{name}: what {recipe.planner} learns with takes none")
+    return recipe.learner(**parts[0]), recipe.problem(tasks, **parts[1])

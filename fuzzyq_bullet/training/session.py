@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_args
@@ -20,6 +20,7 @@ from fuzzyq_bullet.learning.training import MAX_EPISODES
 from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import load_scenario, realise
 from fuzzyq_bullet.scenario.models import Drive
+from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
 from fuzzyq_bullet.training.registry import RECIPES, learn, recipe_of
 from fuzzyq_bullet.training.tasks import MOST_SEED, Tasks
 from fuzzyq_bullet.version import __version__
@@ -38,6 +39,8 @@ class TrainingConfig:
         drive: What moves the robot.
         seed: Seed of all random numbers.
         scenario: Path or name of the scenario to learn on; None for random scenarios.
+        options: What it does otherwise than the planner usually learns.
+        plugins: Modules of the user's own that it needs.
     """
 
     planner: str
@@ -45,6 +48,8 @@ class TrainingConfig:
     drive: Drive = "kinematic"
     seed: int = 0
     scenario: str | None = None
+    options: LearningOptions = AS_USUAL
+    plugins: tuple[str, ...] = ()
 
     @property
     def command(self) -> str:
@@ -56,7 +61,8 @@ class TrainingConfig:
         parts += ["--drive", self.drive, "--seed", str(self.seed)]
         if self.scenario is not None:
             parts += ["--scenario", self.scenario]
-        return shlex.join(parts)
+        parts += self.options.words()
+        return shlex.join([*parts, *(word for name in self.plugins for word in ("--plugin", name))])
 
 
 SHIPPED = {
@@ -64,7 +70,7 @@ SHIPPED = {
     for config in (
         TrainingConfig("q-learning", episodes=200, drive="kinematic", seed=0),
         TrainingConfig("q-lambda", episodes=200, drive="kinematic", seed=0),
-        TrainingConfig("fuzzy-q-lambda", episodes=300, drive="wheels", seed=1),
+        TrainingConfig("fuzzy-q-lambda", episodes=480, drive="wheels", seed=1),
     )
 }
 """How each policy in ``assets/policies`` is made, by planner."""
@@ -150,7 +156,13 @@ class TrainingProgress:
 
 
 def config_for(
-    planner: str, episodes: int, drive: str, seed: int, scenario: str | None
+    planner: str,
+    episodes: int,
+    drive: str,
+    seed: int,
+    scenario: str | None,
+    options: LearningOptions = AS_USUAL,
+    plugins: Sequence[str] = (),
 ) -> TrainingConfig:
     """Return what is asked for by the options of a command.
 
@@ -169,13 +181,16 @@ def config_for(
     drives: tuple[Drive, ...] = get_args(Drive)
     for known_drive in drives:
         if drive == known_drive:
-            config = TrainingConfig(planner, episodes, known_drive, seed, scenario)
+            config = TrainingConfig(
+                planner, episodes, known_drive, seed, scenario, options, tuple(plugins)
+            )
             break
     else:
         raise UserError(f"--drive: {not_one_of('drive', drive, sorted(drives))}")
     if len(config.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
         raise UserError(
-            f"--scenario: its path is too long for the policy to hold: {shorten(scenario)}"
+            "--scenario, --plugin: their paths are too long for the policy to hold: "
+            f"{shorten(config.command)}"
         )
     return config
 
@@ -265,7 +280,8 @@ def learn_policy(
     policy, curve = learn(
         recipe,
         tasks,
-        recipe.setup(config.episodes, config.seed),
+        config.options.setup(recipe.setup(config.episodes, config.seed)),
+        options=config.options,
         command=config.command,
         checkpoint=files.checkpoint,
         resume=resume,

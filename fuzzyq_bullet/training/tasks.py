@@ -8,7 +8,14 @@ from dataclasses import dataclass
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.ground_truth import feasible
-from fuzzyq_bullet.scenario import Drive, Limits, Scenario, random_task, realise
+from fuzzyq_bullet.scenario import (
+    Drive,
+    Limits,
+    Scenario,
+    cellular_task,
+    random_task,
+    realise,
+)
 
 FIRST_SEED = 2**62
 """Scenarios with seeds from here on are for training. Sweeps stay below."""
@@ -33,12 +40,14 @@ class Tasks:
         drive: What moves the robot.
         seed: Of the training.
         counts: Numbers of scattered obstacles, taken in turn.
+        cellular: Whether a corridor of clumped pillars follows after the last of them.
         scenario: If given, every episode is this one, its obstacles drawn anew if it draws any.
     """
 
     drive: Drive = "wheels"
     seed: int = 0
     counts: tuple[int, ...] = COUNTS
+    cellular: bool = False
     scenario: Scenario | None = None
 
     def __post_init__(self) -> None:
@@ -57,6 +66,10 @@ class Tasks:
                 break
         return scenario
 
+    def is_corridor(self, episode: int) -> bool:
+        """Return whether an episode is in a corridor of pillars."""
+        return self.scenario is None and self._turn(episode) == len(self.counts)
+
     def digest(self) -> str:
         """Return a hash of everything that the scenarios depend on."""
         asked = {
@@ -65,10 +78,18 @@ class Tasks:
             "limits": LIMITS.model_dump(mode="json"),
             "scenario": None if self.scenario is None else self.scenario.model_dump(mode="json"),
         }
+        if self.cellular:
+            asked["cellular"] = True
         return hashlib.sha256(json.dumps(asked, sort_keys=True).encode()).hexdigest()[:32]
+
+    def _turn(self, episode: int) -> int:
+        return episode % (len(self.counts) + self.cellular)
 
     def _asked(self, seed: int, episode: int) -> Scenario:
         if self.scenario is not None:
             return self.scenario.model_copy(update={"seed": seed, "drive": self.drive})
-        task = random_task(seed, count=self.counts[episode % len(self.counts)])
+        if self.is_corridor(episode):
+            task = cellular_task(seed)
+        else:
+            task = random_task(seed, count=self.counts[self._turn(episode)])
         return task.model_copy(update={"drive": self.drive, "limits": LIMITS})

@@ -190,7 +190,7 @@ MISTAKES: dict[tuple[str, ...], list[str]] = {
     (PLANNER, "--out", "policy.npz"): ["--out: ", ".json", "'policy.npz'"],
     (PLANNER, "--out", "/proc/no/policy.json"): ["/proc/no: not a folder that can be written to"],
     (PLANNER, "--resume", "--anew"): ["--resume", "--anew"],
-    (PLANNER, "--scenario", "x/" * 1500): ["--scenario: its path is too long"],
+    (PLANNER, "--scenario", "x/" * 1500): ["--scenario", "too long for the policy"],
 }
 
 

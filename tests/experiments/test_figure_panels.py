@@ -71,7 +71,7 @@ def test_every_panel_of_a_figure_ends_as_its_scenario_promises(
         return runs[-1]
 
     monkeypatch.setattr("fuzzyq_bullet.figures.runs.run", recorded)
-    figure(number, tmp_path)
+    figure(str(number), out=tmp_path)
     assert capsys.readouterr().out == f"{tmp_path / f'figure{number}.png'}\n"
     with Image.open(tmp_path / f"figure{number}.png") as image:
         assert image.width >= 1000

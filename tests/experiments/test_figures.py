@@ -30,7 +30,7 @@ def test_the_command_draws_figure_4_and_prints_where(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "new" / "folder"
-    figure(4, out)
+    figure("4", out=out)
     path = out / "figure4.png"
     assert capsys.readouterr().out == f"{path}\n"
     assert list(out.iterdir()) == [path]
@@ -63,9 +63,9 @@ def test_a_figure_without_runs_has_no_planner_and_no_figure_has_one_that_is_not_
     tmp_path: Path,
 ) -> None:
     with pytest.raises(UserError, match="figure 4 shows no run that a planner could drive"):
-        figure(4, tmp_path, planner="fuzzy")
+        figure("4", out=tmp_path, planner="fuzzy")
     with pytest.raises(UserError, match="planner"):
-        figure(9, tmp_path / "new", planner="../nobody")
+        figure("9", out=tmp_path / "new", planner="../nobody")
     assert not list(tmp_path.iterdir())
 
 
@@ -74,18 +74,18 @@ def test_a_picture_that_is_no_figure_of_ours_is_replaced_only_when_asked_to(tmp_
     Image.new("RGB", (200, 200)).save(mine)
     before = mine.read_bytes()
     with pytest.raises(UserError, match=r"figure4.png: is there already, .* --replace"):
-        figure(4, tmp_path)
+        figure("4", out=tmp_path)
     assert mine.read_bytes() == before
-    figure(4, tmp_path, replace=True)
+    figure("4", out=tmp_path, replace=True)
     drawn = mine.read_bytes()
     assert drawn != before
-    figure(4, tmp_path)  # its own
+    figure("4", out=tmp_path)  # its own
     assert mine.read_bytes() == drawn
 
 
 def test_an_unknown_figure_is_refused_and_the_known_are_named(tmp_path: Path) -> None:
     with pytest.raises(UserError) as caught:
-        figure(99, tmp_path)
+        figure("99", out=tmp_path)
     (line,) = caught.value.problems
     assert "99" in line
     assert all(f"{number} ({shows})" in line for number, shows in FIGURES.items())
@@ -95,7 +95,7 @@ def test_an_unknown_figure_is_refused_and_the_known_are_named(tmp_path: Path) ->
 def test_a_folder_that_cannot_be_written_is_the_users_error(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(UserError, match="file"):
-        figure(4, tmp_path / "file")
+        figure("4", out=tmp_path / "file")
 
 
 def test_every_registered_figure_can_be_drawn() -> None:

@@ -1,4 +1,4 @@
-"""The learners: tables and features, against known solutions and against each other."""
+"""The learners: tables and rules, against known solutions and against each other."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from examples.exercises import CliffWalk, Corridor, RandomWalk
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import (
     EXPLORATION,
     LEARNING_RATE,
     TABLE_1,
     TRACE_DECAY,
-    Features,
-    LinearQLambda,
+    FuzzyQLambda,
     QLambda,
     QLearning,
     Schedule,
@@ -25,8 +25,7 @@ from fuzzyq_bullet.learning import (
     greedy,
     train,
 )
-from fuzzyq_bullet.learning.learners import FAINT, TraceKind
-from tests.helpers.toys import CliffWalk, Corridor, RandomWalk
+from fuzzyq_bullet.learning.learners import FAINT, Floats, TraceKind
 
 STATES, ACTIONS = 5, 3
 KINDS = st.sampled_from(["accumulating", "replacing"])
@@ -43,8 +42,9 @@ STEPS = st.lists(
 )
 
 
-def one_hot(state: int | None) -> Features | None:
-    return None if state is None else Features.one_hot(state)
+def alone(state: int) -> Floats:
+    """One rule that fires and no other."""
+    return np.eye(STATES)[state]
 
 
 # Table 1 and the schedules
@@ -53,10 +53,10 @@ def one_hot(state: int | None) -> Features | None:
 def test_the_paper_s_parameters_are_the_default() -> None:
     assert (TABLE_1.initial_value, TABLE_1.initial_trace) == (0.0, 0.0)
     assert QLearning(1, 1).discount == 0.9  # ξ, Eq. 7
-    assert QLambda(1, 1).discount == LinearQLambda(1, 1).discount == 0.95  # γ, Eqs. 18 and 19
-    assert QLambda(1, 1).kind == LinearQLambda(1, 1).kind == "accumulating"
+    assert QLambda(1, 1).discount == FuzzyQLambda(1, 1).discount == 0.95  # γ, Eqs. 18 and 19
+    assert QLambda(1, 1).kind == FuzzyQLambda(1, 1).kind == "accumulating"
     assert not QLambda(2, 2).table.any()
-    assert not LinearQLambda(2, 2).table.any()
+    assert not FuzzyQLambda(2, 2).table.any()
     setup = Setup()
     assert (setup.episodes, setup.rate, setup.trace_decay) == (200, LEARNING_RATE, TRACE_DECAY)
 
@@ -133,24 +133,24 @@ def test_one_step_of_q_lambda_is_eq_18() -> None:
 
 @pytest.mark.parametrize(("kind", "trace"), [("accumulating", 1 + 0.5 * 0.95), ("replacing", 1.0)])
 def test_a_state_seen_twice_adds_to_its_trace_or_renews_it(kind: TraceKind, trace: float) -> None:
-    for learner in (QLambda(1, 1, kind=kind), LinearQLambda(1, 1, kind=kind)):
+    for learner in (QLambda(1, 1, kind=kind), FuzzyQLambda(1, 1, kind=kind)):
         learner.begin(0.1, 0.5)
         for _ in range(2):
             if isinstance(learner, QLambda):
                 learner.learn(0, 0, 1.0, 0)
             else:
-                learner.learn(Features.one_hot(0), 0, 1.0, Features.one_hot(0))
+                learner.learn(np.ones(1), (0,), 1.0, np.ones(1))
         assert learner.traces[0, 0] == pytest.approx(trace)
 
 
 def test_a_table_of_another_shape_is_refused() -> None:
-    for learner in (QLearning(2, 3), QLambda(2, 3), LinearQLambda(2, 3)):
+    for learner in (QLearning(2, 3), QLambda(2, 3), FuzzyQLambda(2, 3)):
         with pytest.raises(ValueError, match="shape"):
             learner.table = np.zeros((3, 2))
 
 
 def test_a_table_that_was_read_is_a_copy() -> None:
-    for learner in (QLearning(2, 3), QLambda(2, 3), LinearQLambda(2, 3)):
+    for learner in (QLearning(2, 3), QLambda(2, 3), FuzzyQLambda(2, 3)):
         given = np.ones((2, 3))
         learner.table = given
         given[0, 0] = learner.table[0, 0] = 7.0
@@ -184,27 +184,38 @@ def test_without_trace_decay_q_lambda_is_q_learning_step_by_step(
         assert (plain.table == traced.table).all()
 
 
-@given(steps=STEPS, kind=KINDS, rate=st.floats(0.0, 0.1), discount=UNIT, trace_decay=UNIT)
-def test_one_hot_features_are_a_table_step_by_step(
+@given(
+    steps=STEPS,
+    kind=KINDS,
+    rate=st.floats(0.0, 0.1),
+    discount=UNIT,
+    trace_decay=UNIT,
+    best=st.booleans(),
+)
+def test_a_rule_alone_in_each_state_is_a_table_step_by_step(
     steps: list[tuple[int, int, float, int | None]],
     kind: TraceKind,
     rate: float,
     discount: float,
     trace_decay: float,
+    best: bool,
 ) -> None:
+    # With traces only where the best is done: Watkins cuts them elsewhere, and rules do not.
+    trace_decay *= best
     table = QLambda(STATES, ACTIONS, discount=discount, kind=kind)
-    linear = LinearQLambda(STATES, ACTIONS, discount=discount, kind=kind)
+    rules = FuzzyQLambda(STATES, ACTIONS, discount=discount, kind=kind)
     table.begin(rate, trace_decay)
-    linear.begin(rate, trace_decay)
+    rules.begin(rate, trace_decay)
     for s, a, r, after in steps:
-        state = Features.one_hot(s)
-        assert list(table.values(s)) == linear.values(state)
-        assert table.learn(s, a, r, after) == linear.learn(state, a, r, one_hot(after))
-        assert (table.table == linear.table).all()
-        assert (table.traces == linear.traces).all()
+        act = greedy(table.values(s)) if best else a
+        found = rules.learn(alone(s), [act] * STATES, r, None if after is None else alone(after))
+        assert table.learn(s, act, r, after) == pytest.approx(found)
+        assert table.table == pytest.approx(rules.table)
+        assert table.traces == pytest.approx(rules.traces)
+        rules.table = table.table  # the last digit must not decide which is the best
         if after is None:
             table.begin(rate, trace_decay)
-            linear.begin(rate, trace_decay)
+            rules.begin(rate, trace_decay)
 
 
 @given(steps=STEPS, kind=KINDS, trace_decay=UNIT)
@@ -245,53 +256,94 @@ def test_q_lambda_stays_finite_at_the_paper_s_rate(
     share: float,
 ) -> None:
     table = QLambda(STATES, ACTIONS, kind=kind)
-    linear = LinearQLambda(STATES, ACTIONS, kind=kind)
-    mixed = [Features.of(share * np.eye(STATES)[s] + (1 - share) / STATES) for s in range(STATES)]
+    rules = FuzzyQLambda(STATES, ACTIONS, kind=kind, twins=range(STATES)[::-1])
+    mixed = [share * alone(s) + (1 - share) / STATES for s in range(STATES)]
     for _ in range(20):
         table.begin(LEARNING_RATE.start, trace_decay)
-        linear.begin(LEARNING_RATE.start, trace_decay)
+        rules.begin(LEARNING_RATE.start, trace_decay)
         for s, a, r, after in steps:
             table.learn(s, a, r, after)
-            linear.learn(mixed[s], a, r, None if after is None else mixed[after])
+            chosen = [(a + rule) % ACTIONS for rule in range(STATES)]
+            rules.learn(mixed[s], chosen, r, None if after is None else mixed[after])
     assert np.isfinite(table.table).all()
-    assert np.isfinite(linear.table).all()
+    assert np.abs(rules.table).max() < 1e4
 
 
-# Features
+# Rules
 
 
 @given(
     phi=st.lists(st.floats(0.0, 1.0), min_size=STATES, max_size=STATES),
-    action=st.integers(0, ACTIONS - 1),
+    chosen=st.lists(st.integers(0, ACTIONS - 1), min_size=STATES, max_size=STATES),
     seed=st.integers(0, 1000),
 )
-def test_the_gradient_of_eq_19_is_the_features(phi: list[float], action: int, seed: int) -> None:
-    learner = LinearQLambda(STATES, ACTIONS)
-    weights = np.random.default_rng(seed).normal(size=(STATES, ACTIONS))
-    learner.table = weights
-    features = Features.of(phi)
-    assert learner.values(features) == pytest.approx(np.array(phi) @ weights)
+def test_the_gradient_of_eq_19_is_how_strongly_each_rule_fires(
+    phi: list[float], chosen: list[int], seed: int
+) -> None:
+    learner = FuzzyQLambda(STATES, ACTIONS)
+    before = np.random.default_rng(seed).normal(size=(STATES, ACTIONS))
+    learner.table = before
+    state = np.array(phi)
+    value = sum(phi[rule] * before[rule, action] for rule, action in enumerate(chosen))
+    assert learner.value(state, chosen) == pytest.approx(value)
+    assert learner.best(state) == pytest.approx(state @ before.max(axis=1))
     learner.begin(0.1, 0.5)
-    delta = learner.learn(features, action, -1.0, None)
-    assert delta == pytest.approx(-1.0 - np.array(phi) @ weights[:, action])
-    change = np.outer(phi, np.eye(ACTIONS)[action]) * 0.1 * delta
-    assert learner.table - weights == pytest.approx(change, abs=1e-12)
+    delta = learner.learn(state, chosen, -1.0, None)
+    assert delta == pytest.approx(-1.0 - value)
+    change = state[:, None] * np.eye(ACTIONS)[chosen] * 0.1 * delta
+    assert learner.table - before == pytest.approx(change, abs=1e-12)
 
 
-def test_features_leave_out_what_is_0_and_refuse_what_is_less() -> None:
-    features = Features.of([0.0, 0.5, 0.0, 0.25])
-    assert features.indices.tolist() == [1, 3]
-    assert features.values.tolist() == [0.5, 0.25]
-    for wrong in (-0.1, np.nan, np.inf):
-        with pytest.raises(ValueError, match="at least 0"):
-            Features.of([0.0, wrong])
+def test_every_rule_tries_things_for_itself() -> None:
+    learner, rng = FuzzyQLambda(3, 2), np.random.default_rng(0)
+    learner.table = np.array([[0.0, 1.0], [1.0, 0.0], [0.0, 1.0]])
+    state = np.array([1.0, 0.0, 0.0])
+    assert learner.choose(state, 0.0, rng) == (1, 0, 1)
+    tried = {learner.choose(state, 1.0, rng) for _ in range(200)}
+    assert len(tried) == 2**3
 
 
-def test_graded_replacing_traces_keep_the_stronger_of_old_and_new() -> None:
-    learner = LinearQLambda(2, 1, kind="replacing")
+def test_what_was_tried_counts_for_itself_and_not_for_what_went_before() -> None:
+    learner = FuzzyQLambda(2, 2, discount=1.0)
+    learner.table = np.array([[0.0, -1.0], [0.0, -4.0]])
     learner.begin(0.1, 1.0)
-    learner.learn(Features.of([1.0, 0.1]), 0, 0.0, Features.of([0.2, 0.8]))
-    learner.learn(Features.of([0.2, 0.8]), 0, 0.0, None)
+    learner.learn(np.array([1.0, 0.0]), (0, 0), -2.0, np.array([0.0, 1.0]))
+    learner.learn(np.array([0.0, 1.0]), (0, 1), -3.0, None)
+    # The second step was worth 4 less than the best that could be done there, and cost 3: better
+    # than thought for the one that was tried, worse than the best for the one before.
+    assert learner.table[1] == pytest.approx([0.0, -4.0 + 0.1 * (-3.0 + 4.0)])
+    assert learner.table[0] == pytest.approx([0.1 * -2.0 + 0.1 * -3.0, -1.0])
+
+
+@given(steps=STEPS, kind=KINDS, trace_decay=UNIT)
+def test_twins_learn_alike_from_whatever_happens_to_either(
+    steps: list[tuple[int, int, float, int | None]], kind: TraceKind, trace_decay: float
+) -> None:
+    one = FuzzyQLambda(STATES, ACTIONS, kind=kind, twins=range(STATES)[::-1])
+    other = FuzzyQLambda(STATES, ACTIONS, kind=kind, twins=range(STATES)[::-1])
+    for learner in (one, other):
+        learner.begin(0.1, trace_decay)
+    for s, a, r, after in steps:
+        one.learn(alone(s), [a] * STATES, r, None if after is None else alone(after))
+        mirrored = None if after is None else alone(STATES - 1 - after)
+        other.learn(alone(STATES - 1 - s), [a] * STATES, r, mirrored)
+        assert (one.table == one.table[::-1]).all()
+        assert one.table == pytest.approx(other.table)
+
+
+def test_the_rule_in_the_middle_learns_once_and_not_twice() -> None:
+    plain, twinned = FuzzyQLambda(3, 1), FuzzyQLambda(3, 1, twins=(2, 1, 0))
+    for learner in (plain, twinned):
+        learner.begin(0.1, 0.0)
+        learner.learn(np.array([0.0, 1.0, 0.0]), (0, 0, 0), -1.0, None)
+    assert plain.table.tolist() == twinned.table.tolist()
+
+
+def test_replacing_traces_keep_the_stronger_of_old_and_new() -> None:
+    learner = FuzzyQLambda(2, 1, kind="replacing")
+    learner.begin(0.1, 1.0)
+    learner.learn(np.array([1.0, 0.1]), (0, 0), 0.0, np.array([0.2, 0.8]))
+    learner.learn(np.array([0.2, 0.8]), (0, 0), 0.0, None)
     assert learner.traces[:, 0] == pytest.approx([0.95, 0.8])
 
 

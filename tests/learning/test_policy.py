@@ -14,11 +14,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from examples.exercises import Corridor
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, PolicySpec, QLambda, Setup, load_policy, train
 from fuzzyq_bullet.learning.policy import MAX_BYTES
 from fuzzyq_bullet.version import __version__
-from tests.helpers.toys import Corridor
 
 STATES = tuple(f"place {i}" for i in range(4))
 ACTIONS = ("back", "forth")

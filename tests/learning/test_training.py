@@ -17,10 +17,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from examples.exercises import CliffWalk, Corridor, RandomWalk
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import (
-    Features,
-    LinearQLambda,
+    FuzzyQLambda,
     QLambda,
     QLearning,
     Schedule,
@@ -29,7 +29,7 @@ from fuzzyq_bullet.learning import (
     train,
 )
 from fuzzyq_bullet.learning.checkpoint import Checkpoint, Curve
-from tests.helpers.toys import CliffWalk, Corridor, RandomWalk
+from fuzzyq_bullet.learning.learners import Floats
 
 SETUP = Setup(
     30, seed=7, rate=Schedule(0.3), trace_decay=Schedule(0.8), max_steps=60, random_ties=True
@@ -47,27 +47,27 @@ def whole() -> tuple[bytes, bytes]:
     return one.table.tobytes(), curve.tobytes()
 
 
-class FeaturedWalk:
-    """A random walk between 5 places that are seen as a mixture of 3 features."""
+class MixedWalk:
+    """A random walk between 5 places, in each of which 3 rules fire to some degree."""
 
     def __init__(self, seed: int = 0) -> None:
         self._walk = RandomWalk(5, seed=seed)
 
-    def reset(self, episode: int, /) -> Features:
-        return self.features(self._walk.reset(episode))
+    def reset(self, episode: int, /) -> Floats:
+        return self.firing(self._walk.reset(episode))
 
-    def step(self, action: int, /) -> tuple[Features, float, bool]:
-        place, reward, over = self._walk.step(action)
-        return self.features(place), reward, over
+    def step(self, actions: tuple[int, ...], /) -> tuple[Floats, float, bool]:
+        place, reward, over = self._walk.step(actions[0])
+        return self.firing(place), reward, over
 
     @property
     def outcome(self) -> str:
         return self._walk.outcome
 
     @staticmethod
-    def features(place: int) -> Features:
+    def firing(place: int) -> Floats:
         right = place / 4
-        return Features.of([max(0.0, 1 - 2 * right), 1 - abs(1 - 2 * right), max(0, 2 * right - 1)])
+        return np.array([max(0.0, 1 - 2 * right), 1 - abs(1 - 2 * right), max(0, 2 * right - 1)])
 
 
 # The same again
@@ -104,10 +104,10 @@ def test_the_curve_tells_each_episode() -> None:
     assert curve["steps"].min() == 4
 
 
-def test_features_are_trained_on_as_tables_are() -> None:
-    one = LinearQLambda(3, 1, discount=1.0)
-    train(FeaturedWalk(), one, Setup(1000, rate=Schedule(0.2, 0.1995), trace_decay=Schedule(0.5)))
-    values = [one.values(FeaturedWalk.features(place))[0] for place in range(5)]
+def test_rules_are_trained_as_tables_are() -> None:
+    one = FuzzyQLambda(3, 1, discount=1.0)
+    train(MixedWalk(), one, Setup(1000, rate=Schedule(0.2, 0.1995), trace_decay=Schedule(0.5)))
+    values = [one.best(MixedWalk.firing(place)) for place in range(5)]
     assert values == pytest.approx([1 / 6, 2 / 6, 3 / 6, 4 / 6, 5 / 6], abs=0.06)
 
 
@@ -178,20 +178,20 @@ def test_what_is_told_is_safe_already(tmp_path: Path) -> None:
     assert len(Checkpoint.load(path).curve) == 5
 
 
-def test_features_too_are_resumed_to_the_same_table(tmp_path: Path) -> None:
+def test_rules_too_are_resumed_to_the_same_table(tmp_path: Path) -> None:
     path = tmp_path / "training.npz"
     setup = Setup(20, trace_decay=Schedule(0.9))
-    expected = LinearQLambda(3, 1)
-    train(FeaturedWalk(), expected, setup)
+    expected = FuzzyQLambda(3, 1)
+    train(MixedWalk(), expected, setup)
 
     def stop(curve: Curve) -> None:
         if len(curve) == 11:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        train(FeaturedWalk(), LinearQLambda(3, 1), setup, checkpoint=path, on_episode=stop)
-    one = LinearQLambda(3, 1)
-    train(FeaturedWalk(), one, setup, checkpoint=path, resume=True)
+        train(MixedWalk(), FuzzyQLambda(3, 1), setup, checkpoint=path, on_episode=stop)
+    one = FuzzyQLambda(3, 1)
+    train(MixedWalk(), one, setup, checkpoint=path, resume=True)
     assert one.table.tobytes() == expected.table.tobytes()
 
 

@@ -19,12 +19,18 @@ from fuzzyq_bullet import UserError
 from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.cli.study import printed
 from fuzzyq_bullet.learning import Policy
-from fuzzyq_bullet.planning.fuzzy_q_lambda import ACTIONS, Weights
+from fuzzyq_bullet.planning.fuzzy_q_lambda import CHOICES
 from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.studies import Findings
 from fuzzyq_bullet.studies.episodes import Environment, Row
 from fuzzyq_bullet.studies.learning.shown import picture, tables_of
-from fuzzyq_bullet.studies.learning.study import MOST_SEED, ComparisonPlan, Learning, unseen
+from fuzzyq_bullet.studies.learning.study import (
+    MOST_SEED,
+    NO_CONTROLLER,
+    ComparisonPlan,
+    Learning,
+    unseen,
+)
 from fuzzyq_bullet.studies.learning.table import (
     LEARNED,
     Against,
@@ -39,6 +45,7 @@ from fuzzyq_bullet.studies.selection import (
     ONE,
     PAIRS,
     TRIPLES,
+    Weights,
     best_of,
     label_of,
     search,
@@ -56,8 +63,8 @@ from fuzzyq_bullet.training.tasks import FIRST_SEED, Tasks
 from tests.helpers.commands import Call, no_workers
 
 SLOW, FAST = HALF, ONE
-PAIR = "best pair"
-ROLES = {PAIR: label_of(FAST)}
+RIVAL = "best triple"
+ROLES = {RIVAL: label_of(FAST)}
 TIMES = st.lists(st.tuples(st.floats(1.0, 600.0), st.floats(1.0, 600.0)), min_size=1, max_size=12)
 
 
@@ -97,8 +104,8 @@ def hit(planner: str | Weights, run: int, **changes: Any) -> Row:
 
 
 def gain(rows: Iterable[Row], roles: Mapping[str, str] = ROLES) -> tuple[Summary, Against]:
-    summary = summary_of(rows, roles, PAIR, dice())
-    return summary, next(one for one in summary.against if one.role == PAIR)
+    summary = summary_of(rows, roles, RIVAL, dice())
+    return summary, next(one for one in summary.against if one.role == RIVAL)
 
 
 def missed(summary: Summary) -> list[str]:
@@ -277,12 +284,12 @@ def test_every_figure_is_compared_on_the_same_environments() -> None:
 
 
 def test_a_gain_of_less_than_a_twentieth_misses_and_one_never_measured_too() -> None:
-    for time, expected in ((19.0, []), (19.1, ["time"]), (25.0, ["time"])):
+    for time, expected in ((19.0, []), (19.1, ["time"]), (25.0, ["time", "upper"])):
         summary, _ = gain([row(LEARNED, time_s=time), row(FAST)])
         assert missed(summary) == expected
     summary, against = gain([stuck(LEARNED, 0), stuck(FAST, 0)])
     assert against.time is None
-    assert missed(summary) == ["time"]
+    assert missed(summary) == ["time", "upper"]
     assert "not measured" in str(Target("time", None, 0.95, "at most"))
 
 
@@ -347,7 +354,8 @@ def test_a_search_that_cannot_tell_says_so() -> None:
 
 
 def test_the_search_offers_all_that_learning_has() -> None:
-    assert set(ACTIONS) <= set(TRIPLES)
+    turning = {one for one in CHOICES if one.turn}  # 0 is no weight, but no controller
+    assert turning <= {(one.step, one.turn) for one in TRIPLES if one.breakout_at == 4.0}
     assert {HALF, ONE} <= set(PAIRS) <= set(TRIPLES)
     labels = [label_of(one) for one in TRIPLES]
     assert len(set(labels)) == len(labels)
@@ -408,7 +416,7 @@ def test_all_planners_meet_the_same_environments_with_counts_in_turn(
     policy: tuple[Policy, Path],
 ) -> None:
     plan = comparison(policy[0], 0, 4)
-    names = [label_of(HALF), label_of(ONE), LEARNED]
+    names = [label_of(HALF), label_of(ONE), NO_CONTROLLER, LEARNED]
     assert [(name, where.count) for where, name, _ in plan.schedule()] == [
         (name, count) for count in (5, 25, 5, 25) for name in names
     ]
@@ -440,7 +448,7 @@ def test_it_runs_goes_on_and_says_what_it_found(
     assert "no training saw any of the 4 environments: their seeds are 0 to 3" in first.stderr
     assert told["seeds"]["greatest"] == 3 < told["seeds"]["first_of_trainings"]
     assert [one["role"] for one in told["lines"]] == [
-        *("0.5/0.5", "1/1", "best pair", "best triple", "learned")
+        *("0.5/0.5", "1/1", "best pair", "best triple", "no controller", "learned")
     ]
     assert len(told["search"]["best triple"]["trials"]) == len(TRIPLES)
     assert told["settings"]["same_tasks"] is False  # this policy learned among 5 obstacles
@@ -468,9 +476,9 @@ def test_the_tables_cut_nothing_off() -> None:
     summary, _ = gain(
         [
             *(row(LEARNED, run, time_s=10.0 + run) for run in range(3)),
-            *(row(name, run) for name in (FAST, SLOW, *ACTIONS[-2:]) for run in range(3)),
+            *(row(name, run) for name in (FAST, SLOW, *TRIPLES[-2:]) for run in range(3)),
         ],
-        {"0.5/0.5": label_of(SLOW), PAIR: label_of(FAST), "best triple": label_of(ACTIONS[-1])},
+        {"0.5/0.5": label_of(SLOW), RIVAL: label_of(FAST), "best pair": label_of(TRIPLES[-1])},
     )
     console = Console(width=Learning.width)
     with console.capture() as shown:

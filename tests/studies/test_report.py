@@ -16,15 +16,22 @@ from PIL import Image
 
 from fuzzyq_bullet import UserError
 from fuzzyq_bullet.cli.app import call
-from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 from fuzzyq_bullet.studies import FieldsPlan, Plan, described, planners_of
 from fuzzyq_bullet.studies.episodes import Environment, Row, as_csv, from_csv
 from fuzzyq_bullet.studies.escape.study import Escape
-from fuzzyq_bullet.studies.learning.study import ComparisonPlan
+from fuzzyq_bullet.studies.learning.study import NO_CONTROLLER, ComparisonPlan
 from fuzzyq_bullet.studies.learning.table import LEARNED
 from fuzzyq_bullet.studies.report.films import picked
 from fuzzyq_bullet.studies.report.markup import Html, join, tag
-from fuzzyq_bullet.studies.selection import HALF, ONE, TRIPLES, USUAL_BREAKOUT, SearchPlan, label_of
+from fuzzyq_bullet.studies.selection import (
+    HALF,
+    ONE,
+    TRIPLES,
+    USUAL_BREAKOUT,
+    SearchPlan,
+    Weights,
+    label_of,
+)
 from fuzzyq_bullet.studies.steps.study import contenders
 from fuzzyq_bullet.studies.storage import Folder
 from fuzzyq_bullet.studies.study import met_by_all
@@ -224,7 +231,7 @@ def test_every_sweep_of_a_folder_is_on_the_page(
         sweep="learning comparison", drive="kinematic", seed=0, environments=2, counts=(5,),
         fixed=fixed,
     )  # fmt: skip
-    met = [row(name, run) for name in (*fixed, LEARNED) for run in (0, 1)]
+    met = [row(name, run) for name in (*fixed, NO_CONTROLLER, LEARNED) for run in (0, 1)]
     write(home / "l" / "comparison", comparison.model_dump(mode="json"), met, "comparison.csv")
     fields = Escape(
         planner="fuzzy", drive="wheels", runs=1, counts="5", traps=4, rectangles="30"

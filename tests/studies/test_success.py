@@ -16,11 +16,11 @@ from rich.console import Console
 from fuzzyq_bullet import UserError
 from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.cli.study import printed
-from fuzzyq_bullet.planning.fuzzy_q_lambda import Weights
 from fuzzyq_bullet.studies import FieldsPlan, Swept
 from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.options import PAPER, described
 from fuzzyq_bullet.studies.plan import LIMITS, M_S
+from fuzzyq_bullet.studies.selection import Weights
 from fuzzyq_bullet.studies.statistics import share
 from fuzzyq_bullet.studies.steps.study import Steps, contenders, roles
 from fuzzyq_bullet.studies.steps.table import PAPER_STEPS
@@ -97,15 +97,15 @@ def test_where_all_succeed_the_interval_still_has_a_width_and_nothing_has_no_sha
 # Fig. 13
 
 
-def test_by_default_it_is_the_papers_experiment() -> None:
+def test_by_default_it_is_the_papers_experiment_and_the_direct_planners_once_more() -> None:
     assert (COUNTS[0], COUNTS[-1], len(COUNTS), RUNS) == (5, 125, 25, 50)
     study = Success()
     jobs = study.plan().jobs(study.planner_set())
-    assert len(jobs) == 6250
+    assert len(jobs) == 7 * 1250
     assert {job.limits for job in jobs} == {LIMITS}
     assert PAPER_STEPS["fuzzy"] < M_S
-    for number in range(0, len(jobs), 5):  # the same environments for every planner
-        assert len({job.environment for job in jobs[number : number + 5]}) == 1
+    for number in range(0, len(jobs), 7):  # the same environments for every planner
+        assert len({job.environment for job in jobs[number : number + 7]}) == 1
 
 
 def test_success_is_counted_over_all_and_over_those_that_have_a_way() -> None:
@@ -151,8 +151,8 @@ def test_the_picture_tells_planners_apart_without_colour_and_shows_every_share()
     summary = summary_of(rows_by(lambda name, count, run: run * len(name) > count))
     figure = success_picture(summary, "made by hand")
     above, below = figure.axes
-    assert len({look.mark for look in LOOKS.values()}) == len(PAPER)
-    assert len({look.colour for look in LOOKS.values()}) == len(PAPER)
+    assert len({look.mark for look in LOOKS.values()}) == len(LOOKS)
+    assert len({look.colour for look in LOOKS.values()}) == len(LOOKS)
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert set(PAPER) < set(words)
     for axes in (above, below):
@@ -184,7 +184,10 @@ def test_a_failure_has_no_steps_or_m_s_of_them_and_the_table_tells_which() -> No
     assert fuzzy.steps.value == 45.0
     assert fuzzy.punished == pytest.approx((40 + 50 + M_S) / 3)
     assert summary.common == 3  # of the planners with ways out: fuzzy does not shrink it
-    assert [line.role for line in summary.lines[5:]] == ["fixed 1/1", "best pair 1.5/0.5"]
+    assert [line.role for line in summary.lines[5:]] == [
+        *("q-learning with ways out", "q-lambda with ways out"),
+        *("fixed 1/1", "best pair 1.5/0.5"),
+    ]
     assert all(line.paper is None for line in summary.lines[5:])
     console = Console(width=Steps.width, file=StringIO())
     told = described(contenders(PAIR))
@@ -208,9 +211,9 @@ def test_orders_of_steps_are_compared_where_both_arrived() -> None:
 
 def test_if_one_and_one_is_the_best_pair_it_is_one_row() -> None:
     best = Weights(1.0, 1.0, 1.0)
-    assert len(contenders(best)) == 6
-    assert list(roles(best).values()) == ["fixed 1/1, the best pair"]
-    assert len(contenders(PAIR)) == 7
+    assert len(contenders(best)) == 8
+    assert list(roles(best).values())[2:] == ["fixed 1/1, the best pair"]
+    assert len(contenders(PAIR)) == 9
 
 
 # As people call it
@@ -238,7 +241,7 @@ def test_the_command_writes_rows_summary_and_picture(fuzzyq: Call, tmp_path: Pat
     assert (tmp_path / "success.png").stat().st_size > 10_000
 
 
-def test_the_steps_of_all_seven_are_in_the_table_beside_the_papers(
+def test_the_steps_of_all_nine_are_in_the_table_beside_the_papers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     given = ("--pair", "2,0.5", "--runs", "1", "--count", "5", "--json", "--out", str(tmp_path))
@@ -249,11 +252,12 @@ def test_the_steps_of_all_seven_are_in_the_table_beside_the_papers(
     assert told == json.loads((tmp_path / "steps.json").read_text())
     assert [(line["role"], line["paper"]) for line in told["lines"]] == [
         *((name, PAPER_STEPS[name]) for name in PAPER),
+        *(("q-learning with ways out", None), ("q-lambda with ways out", None)),
         *(("fixed 1/1", None), ("best pair 2/0.5", None)),
     ]
     assert told["settings"]["search"] is None
     with (tmp_path / "table" / "steps.csv").open() as file:
-        assert len(list(csv.DictReader(file))) == 7
+        assert len(list(csv.DictReader(file))) == 9
 
 
 MISTAKES = {

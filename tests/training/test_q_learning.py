@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from fuzzyq_bullet.episode import STUCK_TIME, run, run_in
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, Schedule, load_policy
+from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import QLambdaSettings, QLearningSettings, make_planner, planner_names
 from fuzzyq_bullet.planning.base import STEP_UNIT, Observation, RangeSensor
@@ -31,10 +32,10 @@ from fuzzyq_bullet.planning.q_learning import (
     sense,
     state_of,
 )
-from fuzzyq_bullet.scenario import Scenario, parse_scenario
+from fuzzyq_bullet.scenario import Scenario, load_scenario, parse_scenario
 from fuzzyq_bullet.training.problems import PATIENCE, DirectProblem, TrainingEpisode
 from fuzzyq_bullet.training.registry import learn, recipe_of
-from fuzzyq_bullet.training.rewards import HIT
+from fuzzyq_bullet.training.rewards import USUAL
 from fuzzyq_bullet.training.tasks import Tasks
 
 SETTINGS = {"q-learning": QLearningSettings(), "q-lambda": QLambdaSettings()}
@@ -126,7 +127,7 @@ def test_states_and_headings_are_mirrored_in_the_line_to_the_goal() -> None:
         assert action.name.startswith(side)
     # Two headings are lines that are sensed: it is known whether a step along them is free.
     seen = sense(_facing((0.5, 0.6, 0.7)))
-    assert {seen.bearing + turn for turn in turns[1:4]} == set(seen.lines)
+    assert {seen.aim.bearing + turn for turn in turns[1:4]} == set(seen.lines)
 
 
 def test_what_stands_behind_the_goal_is_not_in_the_way() -> None:
@@ -220,6 +221,24 @@ def test_the_policy_that_is_shipped_drives_round_a_pillar(planner: str) -> None:
 
 
 @pytest.mark.parametrize("planner", PLANNERS)
+@pytest.mark.parametrize("drive", ["kinematic", "wheels"])
+def test_with_filter_and_ways_out_it_touches_nothing_and_gets_out_of_a_trap(
+    planner: str, drive: str
+) -> None:
+    trap = load_scenario("u-shape").model_copy(update={"drive": drive})
+    settings = {"guard": True, "breakout": True}
+    ends = []
+    for how in ({}, settings):
+        chosen = type(SETTINGS[planner]).model_validate({"name": planner, **how})
+        ends.append(run(trap.model_copy(update={"planner": chosen})))
+    alone, guarded = ends
+    assert alone.outcome != "goal"
+    assert guarded.outcome == "goal"
+    assert result_of(guarded).collisions == 0
+    assert {1, 2} & set(guarded.decisions.mode.tolist())  # a way out, told as such
+
+
+@pytest.mark.parametrize("planner", PLANNERS)
 def test_a_policy_of_something_else_is_refused_in_one_line(planner: str, tmp_path: Path) -> None:
     (other,) = set(PLANNERS) - {planner}
     wrong = policy(other, [0] * 64)
@@ -277,11 +296,11 @@ def test_a_robot_that_hits_something_is_put_back_and_pays_for_it_once() -> None:
     for _ in range(29):  # 2/3 s each: the next is the last in 19.9 s
         after, reward, over = problem.step(STRAIGHT)
         assert not over
-        if reward < -HIT:
+        if reward < -USUAL.hit:
             hits.append(reward)
             assert after == state  # where it was
         state = after
-    assert hits == pytest.approx([-HIT - 2 / 3] * len(hits))
+    assert hits == pytest.approx([-USUAL.hit - 2 / 3] * len(hits))
     assert len(hits) > 15
     assert problem.outcome == "collision"
     assert problem.step(STRAIGHT)[2]  # its time is up, however often it was put back
@@ -307,7 +326,7 @@ def test_practice_ends_with_a_hit_where_hits_end_it() -> None:
     while not episode.over:
         reward = episode.advance(act(sense(episode.observe()), STRAIGHT))
     assert episode.outcome == "collision"
-    assert reward.contact == -HIT
+    assert reward.contact == -USUAL.hit
 
 
 def test_practice_gives_up_sooner_than_a_run() -> None:
@@ -336,7 +355,7 @@ def test_a_robot_put_back_is_where_it_decided(drive: str) -> None:
         if reward.contact:
             break
     after = episode.observe()
-    assert reward.contact == -HIT
+    assert reward.contact == -USUAL.hit
     assert reward.progress == pytest.approx(0.0, abs=1e-4)
     assert after.position == pytest.approx(before.position, abs=1e-4)
     assert after.speed == pytest.approx(0.0, abs=1e-6)

@@ -8,13 +8,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from fuzzyq_bullet import episode, with_options
+from fuzzyq_bullet.learning import load_policy
+from fuzzyq_bullet.planning import FuzzyQLambdaSettings
+from fuzzyq_bullet.planning.fuzzy_q_lambda import weights_of
+from fuzzyq_bullet.planning.policies import shipped
+from fuzzyq_bullet.scenario import random_task, realise
 from fuzzyq_bullet.video import paint
 from fuzzyq_bullet.video.compositor import Compositor, closing
 from fuzzyq_bullet.video.decision_hold import DecisionHold
+from fuzzyq_bullet.video.panels.rules import rule_weights
 from fuzzyq_bullet.video.timeline import Timeline
 from tests.helpers.synthetic import drive, scenario
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from fuzzyq_bullet.trajectory import Trajectory
 
 RULED = {"sides:", "left freer", "VN", "ω1", "ω2", "c_f"}
@@ -90,3 +99,21 @@ def test_in_the_last_frame_the_robot_is_in_the_goal_and_heads_nowhere(
     shown = texts(arrived, monkeypatch, over=True)
     assert shown >= {"In the goal", "in the goal"}
     assert not any("straight" in text for text in shown)
+
+
+def test_the_arrows_of_the_rules_are_weighed_by_what_each_has_learned(tmp_path: Path) -> None:
+    policy = load_policy(shipped("fuzzy-q-lambda"))
+    path = tmp_path / "p.json"
+    policy.save(path)
+    planner = FuzzyQLambdaSettings(policy=str(path))
+    task = realise(random_task(3, count=25)).model_copy(update={"planner": planner})
+    record = episode.run(with_options(task, drive="kinematic"))
+    assert rule_weights(record) == pytest.approx(weights_of(policy))
+    # Another policy than the one that drove says nothing of this run.
+    rows = [list(row[::-1]) for row in policy.table]
+    policy.model_copy(update={"table": tuple(map(tuple, rows))}).save(path)
+    assert (rule_weights(record) == 1.0).all()
+    path.unlink()
+    assert (rule_weights(record) == 1.0).all()
+    fixed = with_options(task, drive="kinematic", planner="improved-fuzzy")
+    assert (rule_weights(episode.run(fixed)) == 0.5).all()

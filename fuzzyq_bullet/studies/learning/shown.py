@@ -83,8 +83,8 @@ def _against(summary: Summary) -> Table:
 
 def _counts(summary: Summary) -> Table:
     return Table(
-        "The learned planner and the best pair by the number of obstacles.",
-        ("obstacles", "feasible", "learned solved", "pair solved", "time ÷"),
+        "The learned planner and the best triple by the number of obstacles.",
+        ("obstacles", "feasible", "learned solved", "triple solved", "time ÷"),
         [
             [*map(str, (one.count, one.feasible, one.ours, one.theirs)), cell(one.time, ".3f")]
             for one in summary.counts
@@ -136,7 +136,7 @@ def _environments(axes: Axes, summary: Summary, ratios: Mapping[int, Sequence[fl
     axes.set_xticks(range(len(names)), names)
     axes.set_xlim(-0.5, len(names) - 0.5)
     axes.set_xlabel("obstacles")
-    axes.set_ylabel("time to goal, learned ÷ best pair")
+    axes.set_ylabel("time to goal, learned ÷ best triple")
     tidy(axes, "y")
 
 

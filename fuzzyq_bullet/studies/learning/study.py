@@ -17,7 +17,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy
 from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
 from fuzzyq_bullet.planning.policies import policy_of
-from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
+from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, PlannerSettings
 from fuzzyq_bullet.scenario import Drive, Limits
 from fuzzyq_bullet.studies.episodes import MOST_RUNS, Environment
 from fuzzyq_bullet.studies.learning.table import LEARNED, summary_of, time_ratios
@@ -43,8 +43,12 @@ from fuzzyq_bullet.training.tasks import FIRST_SEED
 MOST = 10_000
 MOST_SEED = (FIRST_SEED - 1) // MOST_RUNS - 1
 """Greatest seed of a comparison: all its environments lie below those of any training."""
-ROLES = ("0.5/0.5", "1/1", "best pair", "best triple")
+FIXED = ("0.5/0.5", "1/1", "best pair", "best triple")
 """What fixed weights are there for."""
+NO_CONTROLLER = "no-controller"
+"""What rows call the best triple's planner without its rules: straight to the aim at full speed."""
+RIVAL = "best triple"
+"""What the targets are about: the best that can be had without learning."""
 
 
 class ComparisonPlan(Plan):
@@ -78,7 +82,7 @@ class ComparisonPlan(Plan):
     def schedule(self) -> Iterator[Episode]:
         """Yield all episodes, those of one environment one after the other."""
         for where in self.places():
-            for name in (*self.fixed, LEARNED):
+            for name in (*self.fixed, NO_CONTROLLER, LEARNED):
                 yield where, name, self.drive
 
 
@@ -101,9 +105,9 @@ class Learning(Study):
     """Compare learned weights with the best fixed ones, on environments that no training saw.
 
     First every pair (ω1, ω2) and triple (ω1, ω2, c_f) is tried on the environments of the training,
-    then the best of them, 0.5/0.5, 1/1 and the learned planner meet on others. May be ended at any
-    moment: the same command goes on where it was. Writes grid/grid.csv, comparison/comparison.csv,
-    learning.json and learning.png. Exit code 1 when a target is missed.
+    then the best of them, 0.5/0.5, 1/1, no controller and the learned planner meet on others. May
+    be ended at any moment: the same command goes on where it was. Writes grid/grid.csv,
+    comparison/comparison.csv, learning.json and learning.png. Exit code 1 when a target is missed.
     """
 
     name: ClassVar[str] = "learning"
@@ -114,7 +118,7 @@ class Learning(Study):
 
     environments: int = Field(200, ge=1, le=MOST, description="Environments to compare on.")
     counts: str = Field(
-        "25,50,75,100", description="Their numbers of scattered obstacles, in turn."
+        "25,50,75,100,125", description="Their numbers of scattered obstacles, in turn."
     )
     grid: int = Field(
         48, ge=1, le=MOST, description="Training environments to find the best fixed on."
@@ -151,8 +155,12 @@ class Learning(Study):
             f"no training saw any of the {self.environments} environments: their seeds are {least} "
             f"to {greatest}, those of trainings begin at {FIRST_SEED}"
         )
-        planners = {name: settings_of(weights) for name, weights in fixed.items()}
-        yield Stage("comparison", plan, {**planners, LEARNED: settings}, notes=tuple(notes))
+        planners: dict[str, PlannerSettings] = {
+            **{name: settings_of(weights) for name, weights in fixed.items()},
+            NO_CONTROLLER: settings_of(choices[RIVAL].best).model_copy(update={"rules": "none"}),
+            LEARNED: settings,
+        }
+        yield Stage("comparison", plan, planners, notes=tuple(notes))
 
     def _learned(self) -> tuple[FuzzyQLambdaSettings, Policy]:
         """Return the planner that has learned, and what.
@@ -194,8 +202,10 @@ class Learning(Study):
         rows = results["comparison"].rows
         choices = _choices(results["grid"])
         chosen = (HALF, ONE, *(one.best for one in choices.values()))
-        roles = dict(zip(ROLES, map(label_of, chosen), strict=True))
-        summary = summary_of(rows, roles, "best pair", np.random.default_rng(plan.seed))
+        roles = dict(zip(FIXED, map(label_of, chosen), strict=True)) | {
+            "no controller": NO_CONTROLLER
+        }
+        summary = summary_of(rows, roles, RIVAL, np.random.default_rng(plan.seed))
         _, policy = self._learned()
         known = hash_of(policy) == plan.policy  # of a report: it may be another by now
         same = known and found.tasks == policy.scenario
@@ -205,7 +215,7 @@ class Learning(Study):
         about = (
             f"{plan.drive}; seed {plan.seed}; {', '.join(map(str, plan.counts))} obstacles in "
             f"turn, walled 10 × 10 m; {learned}; best weights of {len(TRIPLES)} on "
-            f"{choices['best pair'].feasible} environments "
+            f"{choices[RIVAL].feasible} environments "
             f"{'of that training' if same else 'with training seeds, not those it learned on'}."
         )
         least, greatest = unseen(plan.places())
@@ -225,8 +235,8 @@ class Learning(Study):
             "saw"
         )
         shown = Picture(
-            lambda: picture(summary, time_ratios(rows, roles["best pair"]), title),
-            "Time of the learned planner over that of the best fixed pair in each environment, "
+            lambda: picture(summary, time_ratios(rows, roles[RIVAL]), title),
+            "Time of the learned planner over that of the best fixed triple in each environment, "
             "and the intervals of all comparisons; the tables have the figures.",
         )
         missed = tuple(str(one) for one in summary.targets if not one.met)

@@ -14,10 +14,17 @@ from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import ImprovedFuzzySettings, PlannerSettings
-from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, Weights
+from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
-from fuzzyq_bullet.studies.options import PAPER, described, one_drive_of, planner_of, planners_of
+from fuzzyq_bullet.studies.options import (
+    GUARDED,
+    PAPER,
+    described,
+    one_drive_of,
+    planner_of,
+    planners_of,
+)
 from fuzzyq_bullet.studies.plan import FieldsPlan, Plan, limits_with
 from fuzzyq_bullet.studies.registry import register_study
 from fuzzyq_bullet.studies.selection import (
@@ -25,6 +32,7 @@ from fuzzyq_bullet.studies.selection import (
     PAIRS,
     USUAL_BREAKOUT,
     SearchPlan,
+    Weights,
     best_of,
     label_of,
     search,
@@ -43,22 +51,25 @@ RUNS = 20
 def contenders(pair: Weights) -> dict[str, PlannerSettings]:
     """Return all planners of the table by what rows call them.
 
-    The paper's five as they are set by default (fixed weights are 0.5/0.5); then the improved fuzzy
-    planner with weights 1/1, which nobody had to learn, and with the best fixed pair. Without these
-    two, longer steps alone would look like something learned.
+    The paper's five as they are set by default (fixed weights are 0.5/0.5); the direct ones with
+    safety filter and ways out, which the improved ones have; then the improved fuzzy planner with
+    weights 1/1, which nobody had to learn, and with the best fixed pair. Without these two, longer
+    steps alone would look like something learned.
 
     Args:
         pair: The best fixed pair.
     """
-    return planners_of(PAPER) | {label_of(one): settings_of(one) for one in (ONE, pair)}
+    fixed = {label_of(one): settings_of(one) for one in (ONE, pair)}
+    return planners_of((*PAPER, *GUARDED)) | fixed
 
 
 def roles(pair: Weights) -> dict[str, str]:
     """Return what the extra rows are called for a person, by what rows call the planner."""
+    guarded = {name: f"{name.removesuffix('-guarded')} with ways out" for name in GUARDED}
     if label_of(pair) == label_of(ONE):
-        return {label_of(ONE): "fixed 1/1, the best pair"}
+        return {**guarded, label_of(ONE): "fixed 1/1, the best pair"}
     words = f"best pair {pair.step:g}/{pair.turn:g}"
-    return {label_of(ONE): "fixed 1/1", label_of(pair): words}
+    return {**guarded, label_of(ONE): "fixed 1/1", label_of(pair): words}
 
 
 @register_study

@@ -47,6 +47,8 @@ LOOKS = {
     "q-learning": Look(ORANGE, "^", (0, (3, 2))),
     "q-lambda": Look(PURPLE, "D", (0, (1.5, 1.5))),
     "fuzzy-q-lambda": Look(BLUE, "o", "-"),
+    "q-learning-guarded": Look(SKY, "<", (0, (3, 2))),
+    "q-lambda-guarded": Look(INK, "p", (0, (1.5, 1.5))),
 }
 _OTHERS = (Look(INK, "P", "-"), Look(SKY, "X", "--"), Look(GREY, "*", ":"))
 

@@ -11,7 +11,14 @@ from pydantic import Field
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.studies.episodes import Row
-from fuzzyq_bullet.studies.options import PAPER, counts_of, described, one_drive_of, planners_of
+from fuzzyq_bullet.studies.options import (
+    GUARDED,
+    PAPER,
+    counts_of,
+    described,
+    one_drive_of,
+    planners_of,
+)
 from fuzzyq_bullet.studies.plan import FieldsPlan, limits_with
 from fuzzyq_bullet.studies.registry import register_study
 from fuzzyq_bullet.studies.study import Findings, Picture, Results, Study, Table, cell, numbers
@@ -51,7 +58,9 @@ class Success(Study):
     pictured: ClassVar[bool] = True
     filmed: ClassVar[bool] = True
 
-    planners: str = Field(",".join(PAPER), description="Planners to compare, with commas between.")
+    planners: str = Field(
+        ",".join((*PAPER, *GUARDED)), description="Planners to compare, with commas between."
+    )
     counts: str = Field(
         numbers(COUNTS), description="Numbers of scattered obstacles; by default 5, 10, … 125."
     )

@@ -1,6 +1,8 @@
 """Panel 3: the rule table, each rule an arrow of its turn and step, lit as strongly as it fires.
 
-Where the robot aims at a gap exactly the rules are not asked, and the table is grey.
+Turn and step are weighed, where the weights of the rule are known: the robot's own, or those that
+this rule has learned. Where the robot aims at a gap exactly the rules are not asked, and the table
+is grey.
 """
 
 from __future__ import annotations
@@ -11,6 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw
 
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, weights_of
+from fuzzyq_bullet.planning.policies import policy_of
+from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, WeightsSettings
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import is_asked
 from fuzzyq_bullet.video.panels.base import Canvas
@@ -18,8 +24,9 @@ from fuzzyq_bullet.video.panels.fuzzification import NEAR_WORDS, rule_base
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.fuzzy.rules import RuleBase
+    from fuzzyq_bullet.fuzzy.sets import Variable
     from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video.footprints import Floats
 
 _LEFT, _TOP = 86, 48
 _CELL_WIDTH, _CELL_HEIGHT = 36, 32
@@ -45,8 +52,12 @@ class Rules:
         base = rule_base(trajectory)
         turn_unit = float(getattr(trajectory.scenario.planner, "turn_unit", math.radians(45.0)))
         self._rows, self._columns = len(base.row.sets), len(base.column.sets)
+        weights = rule_weights(trajectory).reshape(self._rows, self._columns, 2)
         self._arrows = [
-            [_arrow(base, row, column, turn_unit) for column in range(self._columns)]
+            [
+                _arrow(base.cells[row][column], base.outputs, weights[row, column], turn_unit)
+                for column in range(self._columns)
+            ]
             for row in range(self._rows)
         ]
         right = _LEFT + self._columns * _CELL_WIDTH - _GAP
@@ -104,12 +115,36 @@ class Rules:
         return box[0], box[1], box[2] + 1, box[3] + 1
 
 
-def _arrow(base: RuleBase, row: int, column: int, turn_unit: float) -> Image.Image:
-    """Return an arrow that points where the rule turns and is as long as it steps."""
-    turn_label, step_label = base.cells[row][column]
-    turn, step = base.outputs
-    angle = {one.label: one.center for one in turn.sets}[turn_label] * turn_unit
-    part = {one.label: one.center for one in step.sets}[step_label] / step.domain[1]
+def rule_weights(trajectory: Trajectory) -> Floats:
+    """Return (ω1, ω2) of each rule, shape (R, 2), row by row; 1 where they are not known.
+
+    A policy's are known if it is still the one that the run was driven with.
+    """
+    planner, decisions = trajectory.scenario.planner, trajectory.decisions
+    count = math.prod(decisions.rules.shape[1:])
+    unknown = np.ones((count, 2))
+    if isinstance(planner, WeightsSettings):
+        return np.tile(planner.weights, (count, 1))
+    if not isinstance(planner, FuzzyQLambdaSettings):
+        return unknown
+    try:
+        weights = weights_of(policy_of(planner, POLICY_SPEC))
+    except UserError:
+        return unknown
+    fired = decisions.rules.reshape(-1, count)
+    total = fired.sum(axis=1, keepdims=True)
+    used = (fired / np.where(total > 0.0, total, 1.0)) @ weights
+    return weights if np.allclose(used, decisions.weights) else unknown
+
+
+def _arrow(
+    cell: tuple[str, ...], outputs: tuple[Variable, ...], weights: Floats, turn_unit: float
+) -> Image.Image:
+    """Return an arrow that points where the rule turns and is as long as it steps, weighed."""
+    turn_label, step_label = cell
+    turn, step = outputs
+    angle = {one.label: one.center for one in turn.sets}[turn_label] * turn_unit * weights[1]
+    part = {one.label: one.center for one in step.sets}[step_label] / step.domain[1] * weights[0]
     size = (_CELL_WIDTH - _GAP, _CELL_HEIGHT - _GAP)
     length = 10.0 + 14.0 * min(max(part, 0.0), 1.0)
     way = np.array((-math.sin(angle), -math.cos(angle)))

@@ -1,0 +1,65 @@
+"""What ``fuzzyq explain --policy`` adds: the weights that each rule has learned."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from fuzzyq_bullet.cli.explain_page import FIRES, title_line, turn_and_step
+from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE
+from fuzzyq_bullet.planning.fuzzy_q_lambda import RULE_NAMES, firing, weighed, weights_of
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.fuzzy import Inference
+    from fuzzyq_bullet.learning import Policy
+
+
+def weights_as_dict(policy: Policy, inference: Inference | None) -> dict[str, Any]:
+    """Return the weights of every rule, and those in force where something is sensed."""
+    learned = {
+        "weights": [
+            {"rule": rule, "step": step, "turn": turn}
+            for rule, (step, turn) in zip(RULE_NAMES, weights_of(policy).tolist(), strict=True)
+        ]
+    }
+    if inference is None:
+        return learned
+    return learned | {"weights_in_force": list(weighed(firing(inference), weights_of(policy)))}
+
+
+def weights_as_page(policy: Policy, inference: Inference | None) -> RenderableType:
+    """Return the table of weights, in which the rules that fire stand out."""
+    parts: list[RenderableType] = [
+        title_line("What each rule has learned: ω1 of its step, ω2 of its turn"),
+        Text(f"{policy.command}  ({policy.episodes} episodes)", style="dim"),
+        Text("Columns NB and NS: the right is freer; PS and PB: the left is."),
+        _table(policy, inference),
+    ]
+    if inference is not None:
+        w1, w2 = weighed(firing(inference), weights_of(policy))
+        told = f"ω1, ω2 = {w1:.3g}, {w2:.3g}: {turn_and_step(inference, w1, w2)}"
+        parts += [Text("In force here, each by how strongly its rule fires:"), Text(told)]
+        parts = [Text(), *parts]
+    return Group(*parts)
+
+
+def _table(policy: Policy, inference: Inference | None) -> Table:
+    weights = weights_of(policy).reshape(len(DISTANCE.sets), len(DIFFERENCE.sets), 2)
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1))
+    table.add_column("d \\ Df", style="bold")
+    for label in DIFFERENCE.labels:
+        table.add_column(label)
+    for row, label in enumerate(DISTANCE.labels):
+        cells = []
+        for column in range(len(DIFFERENCE.sets)):
+            step, turn = weights[row, column]
+            strength = 1.0 if inference is None else inference.rules[row][column]
+            words = f"{step:g} {turn:g}"
+            mark = "" if inference is None else " ◀" if strength >= FIRES else "  "
+            cells.append(Text(words + mark, style="" if strength >= FIRES else "dim"))
+        table.add_row(label, *cells)
+    return table

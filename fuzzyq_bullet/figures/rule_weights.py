@@ -1,0 +1,74 @@
+"""What was learned: the weights ω1 and ω2 of every rule, as two tables to look at."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fuzzyq_bullet.figures import MARK
+from fuzzyq_bullet.figures.style import INK, new_figure, save_png
+from fuzzyq_bullet.files import writable_folder
+from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE
+from fuzzyq_bullet.fuzzy.sets import Floats
+from fuzzyq_bullet.planning import FuzzyQLambdaSettings
+from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, weights_of
+from fuzzyq_bullet.planning.policies import policy_of
+
+NEAR = ("very near", "near", "medium", "far", "very far")
+SIDES = ("right\nmuch freer", "right\nfreer", "alike", "left\nfreer", "left\nmuch freer")
+
+
+def draw(out: Path, policy: Path | None = None) -> list[Path]:
+    """Draw the weights of a policy, by default the shipped one, into ``out/weights.png``.
+
+    Raises:
+        UserError: If the policy cannot be used, or the file cannot be written.
+    """
+    settings = FuzzyQLambdaSettings(policy=None if policy is None else str(policy))
+    learned = policy_of(settings, POLICY_SPEC)
+    path = writable_folder(out) / "weights.png"
+    title = f"Learned in {learned.episodes} episodes ({learned.drive}, seed {learned.seed})"
+    save_png(picture(weights_of(learned), title), path, metadata={"Software": MARK})
+    return [path]
+
+
+def picture(weights: Floats, title: str) -> Figure:
+    """Return the figure: ω1 on the left, ω2 on the right.
+
+    Args:
+        weights: (ω1, ω2) of each rule, shape (R, 2), row by row of Table 4.
+        title: How they were learned, in one line.
+    """
+    figure = new_figure(11.0, 4.6)
+    figure.suptitle(title, fontsize=13, weight="bold", color=INK)
+    tables = weights.reshape(len(DISTANCE.sets), len(DIFFERENCE.sets), 2)
+    names = ("ω1: how much of the rule's step", "ω2: how much of the rule's turn")
+    for axes, name, table in zip(
+        figure.subplots(1, 2), names, np.moveaxis(tables, 2, 0), strict=True
+    ):
+        _table(axes, name, table)
+    return figure
+
+
+def _table(axes: Axes, name: str, table: Floats) -> None:
+    """Draw a table; columns from "left much freer" to "right much freer", as in the film."""
+    mirrored = table[:, ::-1]
+    low, high = float(table.min()), float(table.max())
+    shades = (mirrored - low) / (high - low) if high > low else np.full(mirrored.shape, 0.5)
+    axes.imshow(shades, cmap="cividis", vmin=0.0, vmax=1.0, aspect="auto")
+    for (row, column), value in np.ndenumerate(mirrored):
+        ink = "white" if shades[row, column] < 0.6 else INK
+        axes.text(column, row, f"{value:g}", ha="center", va="center", color=ink, fontsize=13)
+    axes.set_xticks(range(len(SIDES)), SIDES[::-1], fontsize=9)
+    axes.set_yticks(range(len(NEAR)), NEAR, fontsize=10)
+    axes.set_ylabel("free distance towards the aim")
+    axes.set_title(name, fontsize=12, color=INK)
+    axes.set_xticks(np.arange(-0.5, len(SIDES)), minor=True)
+    axes.set_yticks(np.arange(-0.5, len(NEAR)), minor=True)
+    axes.grid(which="minor", color="white", lw=2)
+    axes.tick_params(which="both", length=0)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
