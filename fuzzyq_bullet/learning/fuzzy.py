@@ -23,7 +23,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.learning.choices import epsilon_greedy
+from fuzzyq_bullet.learning.choices import greedy
 from fuzzyq_bullet.learning.learners import FAINT, Floats, TraceKind
 from fuzzyq_bullet.learning.schedules import TABLE_1
 
@@ -42,6 +42,8 @@ class FuzzyQLambda:
             that is more.
         twins: For each rule the number of its mirror image, shape (R,); its own if it is that
             itself. Every step is learned from as its mirror image too. Empty: none.
+        patience: For how many steps a rule stands by what it tries, on average. One that changes
+            its mind at every step does nothing that lasts long enough to show.
     """
 
     def __init__(
@@ -52,9 +54,11 @@ class FuzzyQLambda:
         discount: float = TABLE_1.discount,
         kind: TraceKind = "accumulating",
         twins: Sequence[int] = (),
+        patience: float = 1.0,
     ) -> None:
         self.discount = discount
         self.kind = kind
+        self.patience = patience
         self.twins = tuple(twins)
         # A rule that is its own mirror image learns once, not twice.
         alone = np.array([twin == rule for rule, twin in enumerate(twins)], dtype=bool)
@@ -62,6 +66,7 @@ class FuzzyQLambda:
         self._mirror: NDArray[np.intp] = np.array(self.twins, dtype=np.intp)
         self._q = np.full((rules, actions), TABLE_1.initial_value)
         self._traces = np.full((rules, actions), TABLE_1.initial_trace)
+        self._tried: list[int | None] = []
         self._rate = 0.0
         self._fade = 0.0
 
@@ -70,11 +75,14 @@ class FuzzyQLambda:
         self._rate = rate
         self._fade = self.discount * trace_decay
         self._traces.fill(TABLE_1.initial_trace)
+        self._tried = []
 
     def choose(
         self, state: Floats, epsilon: float, rng: np.random.Generator, *, random_ties: bool = False
     ) -> tuple[int, ...]:
         """Let every rule choose ε-greedily for itself, whether it fires here or not.
+
+        It stands by what it tries for ``patience`` steps on average, at most to the episode's end.
 
         Args:
             state: φ(s), shape (R,).
@@ -85,8 +93,18 @@ class FuzzyQLambda:
         Returns:
             j, one action for each rule.
         """
+        rules, actions = self._q.shape
+        if not self._tried:
+            self._tried, changes = [None] * rules, np.ones(rules, dtype=bool)
+        else:
+            changes = rng.random(rules) < 1.0 / self.patience
+        for rule in np.flatnonzero(changes).tolist():
+            tries = rng.random() < epsilon
+            self._tried[rule] = int(rng.integers(actions)) if tries else None
+        ties = rng if random_ties else None
         return tuple(
-            epsilon_greedy(row, epsilon, rng, random_ties=random_ties) for row in self._q.tolist()
+            greedy(row, ties) if tried is None else tried
+            for row, tried in zip(self._q.tolist(), self._tried, strict=True)
         )
 
     def value(self, state: Floats, actions: Sequence[int]) -> float:
@@ -152,4 +170,9 @@ class FuzzyQLambda:
 
     def describe(self) -> dict[str, str | float]:
         """Return what it takes to build such a learner, beside its table."""
-        return {"learner": "fuzzy-q-lambda", "discount": self.discount, "traces": self.kind}
+        return {
+            "learner": "fuzzy-q-lambda",
+            "discount": self.discount,
+            "traces": self.kind,
+            "patience": self.patience,
+        }

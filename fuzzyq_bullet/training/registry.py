@@ -36,6 +36,11 @@ TRACE = Schedule(0.9)
 """λ of ``fuzzy-q-lambda``: what a turn leads to shows seconds later, which is ten steps."""
 UNDISCOUNTED = 1.0
 """γ of ``fuzzy-q-lambda``: a second lost late is worth as much as one lost early."""
+PATIENCE = 13.0
+"""Steps for which a rule of ``fuzzy-q-lambda`` stands by what it tries: 4 s, an encounter."""
+SLOW_RATE = Schedule(0.02, 0.019)
+"""η of ``fuzzy-q-lambda``: what a choice gains is so little beside chance that with Eq. 20, which
+ends with the mean of the last hundred trials, nothing can be told apart."""
 ALL_COUNTS = (25, 50, 75, 100, 125)
 """Numbers of obstacles that ``fuzzy-q-lambda`` learns on, taken in turn."""
 
@@ -129,8 +134,11 @@ register_recipe(
             discount=UNDISCOUNTED,
             kind="replacing",
             twins=TWINS,
+            patience=PATIENCE,
         ),
-        setup=lambda episodes, seed: Setup(episodes=episodes, seed=seed, trace_decay=TRACE),
+        setup=lambda episodes, seed: Setup(
+            episodes=episodes, seed=seed, rate=SLOW_RATE, trace_decay=TRACE
+        ),
         counts=ALL_COUNTS,
         cellular=True,
     )

@@ -303,6 +303,18 @@ def test_every_rule_tries_things_for_itself() -> None:
     assert len(tried) == 2**3
 
 
+def test_a_rule_stands_by_what_it_tries_for_as_long_as_its_patience_on_average() -> None:
+    learner, rng = FuzzyQLambda(40, 1000, patience=20.0), np.random.default_rng(0)
+    state = np.full(40, 1 / 40)
+    learner.begin(0.1, 0.9)
+    chosen = np.array([learner.choose(state, 1.0, rng) for _ in range(500)])
+    changes = float((chosen[1:] != chosen[:-1]).mean())
+    # 20 000 trials; four standard deviations of the share are 0.006.
+    assert changes == pytest.approx(1 / 20, abs=0.006)
+    learner.begin(0.1, 0.9)  # nothing is carried into the next episode
+    assert np.mean(np.array(learner.choose(state, 1.0, rng)) != chosen[-1]) > 0.9
+
+
 def test_what_was_tried_counts_for_itself_and_not_for_what_went_before() -> None:
     learner = FuzzyQLambda(2, 2, discount=1.0)
     learner.table = np.array([[0.0, -1.0], [0.0, -4.0]])

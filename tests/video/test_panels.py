@@ -63,6 +63,8 @@ def test_the_weights_and_c_f_in_force_are_shown(
 ) -> None:
     shown = texts(facts(run, weights=(10.0, 0.25), breakout_at=4.0), monkeypatch)
     assert shown >= {*RULED, "10", "0.25", "4"}
+    many = facts(run, weights=(11.0625, 0.03125), breakout_at=2.5)
+    assert texts(many, monkeypatch) >= {"11.1", "0.03", "2.5"}  # whole, and not cut off
 
 
 @pytest.mark.parametrize(

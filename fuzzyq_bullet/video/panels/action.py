@@ -94,7 +94,7 @@ class Action:
             return ("–",) * 3
         d = self._decisions
         numbers = (*d.weights[index].tolist(), float(d.breakout_at[index]))
-        return tuple(f"{one:.3g}" if math.isfinite(one) else "–" for one in numbers)
+        return tuple(map(_weight, numbers))
 
     def _draw_fact(self, row: int, fact: str | tuple[str, ...]) -> None:
         top = 46 + _ROW * row
@@ -123,6 +123,13 @@ def _metres(clearance: float) -> str:
     if not math.isfinite(clearance):
         return "far away"
     return f"{round(clearance, 2) + 0.0:.2f} m".replace("-", "−")
+
+
+def _weight(number: float) -> str:
+    """Return a weight in at most four signs: those of rules that fire a little have many digits."""
+    if not math.isfinite(number):
+        return "–"
+    return f"{round(number, 1 if number >= 10.0 else 2):g}"
 
 
 def _columns(facts: tuple[str, ...], width: int) -> list[tuple[int, int, str]]:
