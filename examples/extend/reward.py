@@ -1,4 +1,4 @@
-"""A reward of one's own for training: seconds, and something for every turn that is spared.
+"""A reward of one's own for training: minus the seconds lost, and minus something for turning.
 
     fuzzyq train fuzzy-q-lambda --reward gentle --plugin examples/extend/reward.py
 

@@ -64,7 +64,8 @@ def explain(
     if samples < LEAST_SAMPLES:
         raise UserError(f"--samples: {samples} is too few; at least {LEAST_SAMPLES}")
     if difference is None and (distance is not None or policy is None):
-        raise UserError(f"{'D' if distance is None else 'DF'}: missing; give D and DF, or --policy")
+        missing = "D" if distance is None else "DF"
+        raise UserError(f"{missing}: missing; give D and DF, or neither and --policy")
     controller = paper_controller(rules, samples)
     learned = None if policy is None else _learned(policy)
     inference = None
@@ -97,12 +98,9 @@ def explain(
 
 
 def _learned(name: str) -> Policy:
-    from fuzzyq_bullet.planning import FuzzyQLambdaSettings
-    from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
-    from fuzzyq_bullet.planning.policies import policy_of
+    from fuzzyq_bullet.planning.fuzzy_q_lambda import learned_policy
 
-    settings = FuzzyQLambdaSettings(policy=None if name == "shipped" else name)
-    return policy_of(settings, POLICY_SPEC)
+    return learned_policy(None if name == "shipped" else name)
 
 
 def _check(name: str, value: float, variable: Variable) -> None:

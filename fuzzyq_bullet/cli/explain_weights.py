@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from fuzzyq_bullet.cli.explain_page import FIRES, title_line, turn_and_step
+from fuzzyq_bullet.errors import printable
 from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE
 from fuzzyq_bullet.planning.fuzzy_q_lambda import RULE_NAMES, firing, weighed, weights_of
 
@@ -35,8 +36,11 @@ def weights_as_page(policy: Policy, inference: Inference | None) -> RenderableTy
     """Return the table of weights, in which the rules that fire stand out."""
     parts: list[RenderableType] = [
         title_line("What each rule has learned: ω1 of its step, ω2 of its turn"),
-        Text(f"{policy.command}  ({policy.episodes} episodes)", style="dim"),
-        Text("Columns NB and NS: the right is freer; PS and PB: the left is."),
+        Text(f"{printable(policy.command)}  ({policy.episodes} episodes)", style="dim"),
+        Text(
+            "Columns NB and NS: the right is freer; PS and PB: the left is."
+            + ("" if inference is None else " ◀ fires here.")
+        ),
         _table(policy, inference),
     ]
     if inference is not None:

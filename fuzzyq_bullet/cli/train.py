@@ -12,7 +12,7 @@ import typer
 from fuzzyq_bullet.cli.options import PluginOption, progress_bar, say
 from fuzzyq_bullet.errors import Stopped, UserError
 
-HOW: dict[str, Any] = {"rich_help_panel": "How it learns (otherwise than usual)"}
+HOW: dict[str, Any] = {"rich_help_panel": "Changes to how it learns"}
 """Where --help shows what few need."""
 
 if TYPE_CHECKING:
@@ -63,7 +63,9 @@ def train(
     options: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="YAML file with any of these; the command line wins.", **HOW
+            metavar="FILE",
+            help="YAML file with any of these, episodes, drive and seed; the command line wins.",
+            **HOW,
         ),
     ] = None,
     out: Annotated[
@@ -115,18 +117,25 @@ def train(
         )
         if text is not None
     }
-    asked, plain = (AS_USUAL, {}) if options is None else read_options(options)
+    asked, plain, places = (AS_USUAL, {}, {}) if options is None else read_options(options)
     here = {"episodes": episodes, "drive": drive, "seed": seed}
     plain |= {name: value for name, value in here.items() if value is not None}
-    config = config_for(
-        planner,
-        plain.get("episodes", 200),
-        plain.get("drive", "kinematic"),
-        plain.get("seed", 0),
-        scenario,
-        asked.changed_by(LearningOptions.parse(given)),
-        plugin or [],
-    )
+    try:
+        config = config_for(
+            planner,
+            plain.get("episodes", 200),
+            plain.get("drive", "kinematic"),
+            plain.get("seed", 0),
+            scenario,
+            asked.changed_by(LearningOptions.parse(given)),
+            plugin or [],
+        )
+    except UserError as error:
+        name, _, why = error.problems[0].partition(": ")
+        key = name.removeprefix("--")
+        if here.get(key) is None and key in places:  # what is wrong stands in the file
+            raise UserError(f"{places[key]}: {why}") from error
+        raise
     files = TrainingFiles.of(config.planner, out)
     tasks = tasks_for(config)
     files.check()

@@ -21,6 +21,7 @@ from fuzzyq_bullet.figures.style import (
     RED,
     SKY,
     new_figure,
+    plain,
     save_png,
     tidy,
 )
@@ -48,11 +49,13 @@ def draw(out: Path, policies: Sequence[Path]) -> list[Path]:
         )
     curves = [_curve_of(policy) for policy in policies]
     path = writable_folder(out) / "curves.png"
-    save_png(picture(dict(_named(policies, curves))), path, metadata={"Software": MARK})
+    save_png(picture(_named(policies, curves)), path, metadata={"Software": MARK})
     return [path]
 
 
 def _curve_of(policy: Path) -> Curve:
+    if not policy.stem:
+        raise UserError(f"POLICY: {str(policy)!r} is no file")
     checkpoint = policy.with_name(f"{policy.stem}.checkpoint.npz")
     saved = Checkpoint.find(checkpoint)
     if saved is None or not len(saved.curve):
@@ -73,18 +76,18 @@ def _named(policies: Sequence[Path], curves: Sequence[Curve]) -> list[tuple[str,
     return list(zip(names, curves, strict=True))
 
 
-def picture(curves: dict[str, Curve]) -> Figure:
+def picture(curves: Sequence[tuple[str, Curve]]) -> Figure:
     """Return the figure: above what the episodes earned, below the share that reached the goal.
 
     Args:
-        curves: By what each is called in the legend.
+        curves: What each is called in the legend, and the curve.
     """
     figure = new_figure(9.6, 6.6)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-    for (name, curve), (colour, dashes) in zip(curves.items(), LINES, strict=False):
+    for (name, curve), (colour, dashes) in zip(curves, LINES, strict=False):
         episodes = np.arange(1, len(curve) + 1)
         for axes, values in ((above, curve["total"]), (below, reached(curve))):
-            axes.plot(episodes, last_mean(values), dashes, color=colour, lw=2.2, label=name)
+            axes.plot(episodes, last_mean(values), dashes, color=colour, lw=2.2, label=plain(name))
     above.set_ylabel("return of an episode", fontsize=12)
     below.set_ylabel("goal reached", fontsize=12)
     below.set_ylim(0.0, 1.04)

@@ -9,13 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fuzzyq_bullet.figures import MARK
-from fuzzyq_bullet.figures.style import INK, new_figure, save_png
+from fuzzyq_bullet.figures.style import INK, new_figure, plain, save_png
 from fuzzyq_bullet.files import writable_folder
 from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE
 from fuzzyq_bullet.fuzzy.sets import Floats
-from fuzzyq_bullet.planning import FuzzyQLambdaSettings
-from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, weights_of
-from fuzzyq_bullet.planning.policies import policy_of
+from fuzzyq_bullet.planning.fuzzy_q_lambda import learned_policy, weights_of
 
 NEAR = ("very near", "near", "medium", "far", "very far")
 SIDES = ("right\nmuch freer", "right\nfreer", "alike", "left\nfreer", "left\nmuch freer")
@@ -27,10 +25,9 @@ def draw(out: Path, policy: Path | None = None) -> list[Path]:
     Raises:
         UserError: If the policy cannot be used, or the file cannot be written.
     """
-    settings = FuzzyQLambdaSettings(policy=None if policy is None else str(policy))
-    learned = policy_of(settings, POLICY_SPEC)
+    learned = learned_policy(None if policy is None else str(policy))
     path = writable_folder(out) / "weights.png"
-    title = f"Learned in {learned.episodes} episodes ({learned.drive}, seed {learned.seed})"
+    title = f"Learned in {learned.episodes} episodes ({plain(learned.drive)}, seed {learned.seed})"
     save_png(picture(weights_of(learned), title), path, metadata={"Software": MARK})
     return [path]
 

@@ -38,6 +38,16 @@ def tidy(axes: Axes, grid: Literal["x", "y", "both"]) -> None:
         axes.spines[side].set_visible(False)
 
 
+def plain(words: str) -> str:
+    """Return somebody's words so that matplotlib writes them as they are.
+
+    It would read ``$`` as the beginning of a formula, leave out what begins with ``_``, and has no
+    signs for many letters.
+    """
+    shown = words.encode("ascii", "backslashreplace").decode().replace("$", r"\$")
+    return f" {shown}" if shown.startswith("_") else shown
+
+
 def save_png(figure: Figure, path: Path, **options: Any) -> None:
     """Write a figure as a PNG, whole or not at all.
 

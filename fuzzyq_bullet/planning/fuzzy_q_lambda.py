@@ -16,14 +16,18 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
+from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.fuzzy.inference import Inference
 from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE
 from fuzzyq_bullet.learning import Policy, PolicySpec, greedy
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
+from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
+from fuzzyq_bullet.wording import shorten
 
 
 class Weights(NamedTuple):
@@ -61,6 +65,20 @@ def firing(inferred: Inference) -> NDArray[np.float64]:
     strengths = np.array(inferred.rules).ravel()
     total = float(strengths.sum())
     return strengths / total if total > 0.0 else np.full(strengths.size, 1.0 / strengths.size)
+
+
+def learned_policy(file: str | None) -> Policy:
+    """Return the policy in a file, or without one that which is shipped.
+
+    Raises:
+        UserError: If there is none, or none of this planner.
+    """
+    try:
+        settings = FuzzyQLambdaSettings(policy=file)
+    except ValidationError as error:
+        why = error.errors(include_url=False)[0]["msg"]
+        raise UserError(f"policy: {shorten(file)}: {why}") from error
+    return policy_of(settings, POLICY_SPEC)
 
 
 def weights_of(policy: Policy) -> NDArray[np.float64]:

@@ -49,7 +49,6 @@ class ImprovedFuzzyBase:
         observation: Observation,
         situation: Situation,
         weights: tuple[float, float],
-        breakout_at: float | None = None,
     ) -> Decision:
         """Return the decision with these weights: the second half (Steps 10 and 11).
 
@@ -57,10 +56,7 @@ class ImprovedFuzzyBase:
             observation: What was observed.
             situation: What ``sense`` returned for it.
             weights: (ω1, ω2) of Eq. 17.
-            breakout_at: c_f in units of S_p from now on, if another than before.
         """
-        if breakout_at is not None:
-            self._breakout_at = breakout_at
         c_f = math.nan if self._escape is None else self._breakout_at
         decision = self._routine.step(situation, weights, c_f)
         return safety_filter(decision, observation) if self._guard else decision

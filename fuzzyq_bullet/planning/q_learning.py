@@ -111,7 +111,7 @@ def sense(observation: Observation, aim: Aim | None = None) -> Sensed:
 
 
 def act(sensed: Sensed, action: int) -> Decision:
-    """Return the step of an action. No safety filter follows."""
+    """Return the step of an action, as it is without a safety filter."""
     return Decision(
         heading=sensed.aim.bearing + ACTIONS[action].turn,
         step=min(sensed.unit, sensed.aim.distance),

@@ -108,7 +108,7 @@ class FuzzyQLambdaSettings(PolicySettings, RecoverySettings):
 
 
 class DirectSettings(PolicySettings):
-    """Parameters of the direct baselines, which have neither safety filter nor ways out as such."""
+    """Parameters of the direct baselines: neither safety filter nor ways out unless asked for."""
 
     guard: Annotated[bool, Strict()] = Field(
         default=False,

@@ -1,8 +1,8 @@
 """Fixed weights that learned ones are held against, and which of them are best.
 
-They are what a rule may choose, and more, with c_f, which no rule chooses: a search over fewer
-values than the learned planner has would let it win for having more of them. They are tried on a
-training's environments.
+They are what a rule may choose, but for ω2 = 0, and more, with c_f, which no rule chooses: a search
+over fewer values than the learned planner has would let it win for having more of them. They are
+tried on a training's environments.
 
 The best are safe first, then sure, then fast. Times are compared over the same environments for all
 that are left by then: otherwise weights would look fast that fail where the way is long.

@@ -24,7 +24,7 @@ MAX_BYTES = 100_000
 
 @dataclass(frozen=True, slots=True)
 class LearningOptions:
-    """What a training does otherwise than its planner usually learns; None: as usual.
+    """Learning settings that differ from the planner's own; None keeps its own.
 
     Attributes:
         rate: η of Eq. 20.
@@ -71,15 +71,23 @@ class LearningOptions:
         return replace(usual, **changed)
 
 
-def read_options(path: Path) -> tuple[LearningOptions, dict[str, Any]]:
-    """Read an options file: the options, and ``episodes``, ``drive`` and ``seed`` if it has them.
+def read_options(path: Path) -> tuple[LearningOptions, dict[str, Any], dict[str, str]]:
+    """Read an options file.
+
+    Returns:
+        The options; ``episodes``, ``drive`` and ``seed`` if it has them; and for each of those
+        three where it stands, as messages begin.
 
     Raises:
         UserError: If it cannot be read or is wrong; one line with file, line and key.
     """
     content = read_bytes(path, what="an options file", most=MAX_BYTES)
-    tree = read_tree(content.decode("utf-8", "replace"), str(path))
+    text = content.decode("utf-8", "replace")
+    if not text.strip():
+        raise UserError(f"{path}: is empty; it may have the keys {', '.join([*_READERS, *_PLAIN])}")
+    tree = read_tree(text, str(path))
     known = [*_READERS, *_PLAIN]
+    places: dict[str, str] = {}
     if not isinstance(tree.data, dict):
         raise UserError(
             f"{path}:{tree.line}: expected a mapping with any of the keys {', '.join(known)}, "
@@ -92,24 +100,34 @@ def read_options(path: Path) -> tuple[LearningOptions, dict[str, Any]]:
             if type(value) is not _PLAIN[key]:
                 wanted = "text" if _PLAIN[key] is str else "a whole number"
                 raise UserError(f"{where}: expected {wanted}, got {shorten(value)}")
-            plain[key] = value
+            plain[key], places[key] = value, where
         elif key in _READERS:
-            texts[key] = _as_text(value)
+            try:
+                texts[key] = _as_text(value)
+            except UserError as error:
+                raise UserError(f"{where}: {error.problems[0]}") from error
             LearningOptions.parse({key: texts[key]}, f"{path}:{tree.line_of(key)}: ")
         else:
             raise UserError(
                 f"{where}: unknown key; {did_you_mean(key, known)}allowed: {', '.join(known)}"
             )
-    return LearningOptions.parse(texts), plain
+    return LearningOptions.parse(texts), plain, places
 
 
 def _as_text(value: Any) -> str:
-    """Return a value of YAML as the command line would have it."""
-    if isinstance(value, dict):
-        return ",".join(f"{key}={item}" for key, item in value.items())
-    if isinstance(value, list):
-        return ":".join(map(str, value))
-    return str(value)
+    """Return a value of YAML as the command line would have it.
+
+    Raises:
+        UserError: If it is none that could stand there.
+    """
+    numbers = value.values() if isinstance(value, dict) else value
+    if isinstance(value, dict | list):
+        if all(type(one) in (int, float) for one in numbers):
+            pairs = [f"{key}={one!r}" for key, one in value.items()] if type(value) is dict else ()
+            return ",".join(pairs) or ":".join(map(repr, value))
+    elif type(value) in (int, float, str):
+        return str(value)
+    raise UserError(f"expected a number, text, or numbers in [ ] or {{ }}, got {shorten(value)}")
 
 
 def _read(name: str, text: str, where: str) -> Any:
@@ -146,8 +164,13 @@ def _discount(text: str) -> float:
 def _written(value: Schedule | RewardSettings | float) -> str:
     if not isinstance(value, Schedule):
         return str(value)
-    end = round(value.start - value.drop, 12)  # as it was written
-    return f"{value.start!r}:{end!r}" if value.drop else repr(value.start)
+    if not value.drop:
+        return repr(value.start)
+    end = value.start - value.drop
+    # As it was written: 0.05 and not 0.04999999999999999, wherever both mean the same drop.
+    ends = [round(end, digits) for digits in (6, 12, 15)]
+    same = [one for one in ends if value.start - one == value.drop]
+    return f"{value.start!r}:{(same or [end])[0]!r}"
 
 
 AS_USUAL = LearningOptions()

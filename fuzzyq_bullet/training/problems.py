@@ -30,7 +30,7 @@ from fuzzyq_bullet.training.tasks import Tasks
 PATIENCE = 10.0
 """How long the robot may stay at one place before the episode ends as stuck (s)."""
 HOLD = 6
-"""Decisions for which the rules stand by what they chose: 0.3 s."""
+"""Decisions of one step of learning: 0.3 s on wheels."""
 
 
 class TrainingEpisode:

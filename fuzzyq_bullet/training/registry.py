@@ -37,7 +37,7 @@ TRACE = Schedule(0.9)
 UNDISCOUNTED = 1.0
 """γ of ``fuzzy-q-lambda``: a second lost late is worth as much as one lost early."""
 PATIENCE = 13.0
-"""Steps for which a rule of ``fuzzy-q-lambda`` stands by what it tries: 4 s, an encounter."""
+"""Steps for which a rule of ``fuzzy-q-lambda`` stands by what it tries: on wheels 4 s."""
 SLOW_RATE = Schedule(0.02, 0.019)
 """η of ``fuzzy-q-lambda``: what a choice gains is so little beside chance that with Eq. 20, which
 ends with the mean of the last hundred trials, nothing can be told apart."""
@@ -218,17 +218,29 @@ def learn(
     return policy, curve
 
 
+def refuse_unfit(recipe: Recipe, options: LearningOptions) -> None:
+    """Make sure that what a planner learns with takes what is asked for.
+
+    Raises:
+        UserError: If it does not; names the option.
+    """
+    takes = {*signature(recipe.learner).parameters, *signature(recipe.problem).parameters}
+    for name in ("discount", "reward"):
+        if getattr(options, name) is not None and name not in takes:
+            raise UserError(f"--{name}: what {recipe.planner} learns with takes none")
+    if options.trace is not None and type(recipe.learner()) is QLearning:
+        raise UserError(f"--trace: what {recipe.planner} learns with has no traces")
+
+
 def _built(
     recipe: Recipe, tasks: Tasks, options: LearningOptions
 ) -> tuple[Learner[Any, Any], Problem[Any, Any]]:
-    """Build learner and problem, with what is asked for and what they take."""
+    """Build learner and problem, with what is asked for."""
+    refuse_unfit(recipe, options)
     asked = {"discount": options.discount, "reward": options.reward}
     asked = {name: value for name, value in asked.items() if value is not None}
-    parts = []
-    for function, about in ((recipe.learner, ("discount",)), (recipe.problem, tuple(asked))):
-        taken = signature(function).parameters
-        parts.append({name: asked[name] for name in asked if name in about and name in taken})
-    for name in asked:
-        if not any(name in part for part in parts):
-            raise UserError(f"--{name}: what {recipe.planner} learns with takes none")
-    return recipe.learner(**parts[0]), recipe.problem(tasks, **parts[1])
+    learns, is_of = (
+        {name: asked[name] for name in asked if name in signature(function).parameters}
+        for function in (recipe.learner, recipe.problem)
+    )
+    return recipe.learner(**learns), recipe.problem(tasks, **is_of)

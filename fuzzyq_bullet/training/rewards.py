@@ -1,4 +1,4 @@
-"""The reward of a decision, in seconds: r = −Δt + Δ(distance to the goal)/v_max − penalties."""
+"""The reward of a decision in seconds: −Δt + (how much nearer to the goal)/v_max − penalties."""
 
 from __future__ import annotations
 
@@ -74,7 +74,8 @@ class RewardSettings:
         hit: Penalty for a contact (s): by default more than any detour that avoids it.
         given_up: Penalty for an episode that ends outside the goal without a contact (s).
         progress: How much the progress towards the goal counts: 1, or 0 for time alone.
-        own: Name of a registered reward that takes the place of all three; empty for none.
+        own: Name of a registered reward that takes the place of all this, the time too; empty for
+            none.
     """
 
     hit: float = 30.0
@@ -84,7 +85,7 @@ class RewardSettings:
 
     @classmethod
     def parse(cls, text: str) -> RewardSettings:
-        """Read ``hit=30,given_up=10,progress=1``, of which any may be missing, or a name.
+        """Read ``hit=30,given_up=10,progress=1``, of which any may be missing; or a name.
 
         Raises:
             UserError: If it is neither.
@@ -94,16 +95,18 @@ class RewardSettings:
         known = [one.name for one in fields(cls) if one.name != "own"]
         found: dict[str, Any] = {}
         for part in text.split(","):
-            key, equals, number = part.partition("=")
+            key, equals, number = (one.strip() for one in part.partition("="))
             if not equals:
                 names = ", ".join(REWARDS) or "none is registered; --plugin names a file with one"
                 raise UserError(
                     f"reward: no reward {shorten(text)}; {did_you_mean(text, REWARDS)}rewards of "
                     f"your own: {names}; or {', '.join(f'{one}=NUMBER' for one in known)}"
                 )
-            if key not in known or key in found:
+            if key in found:
+                raise UserError(f"reward: {key}: is given twice")
+            if key not in known:
                 raise UserError(
-                    f"reward: {shorten(key)}: not a part of the reward, or given twice; "
+                    f"reward: {shorten(key)}: no part of the reward; "
                     f"{did_you_mean(key, known)}allowed: {', '.join(known)}"
                 )
             found[key] = _penalty(key, number)
@@ -112,7 +115,9 @@ class RewardSettings:
     def __str__(self) -> str:
         """Return what ``parse`` reads as the same."""
         return self.own or ",".join(
-            f"{one.name}={getattr(self, one.name):g}" for one in fields(self) if one.name != "own"
+            f"{one.name}={_short(getattr(self, one.name))}"
+            for one in fields(self)
+            if one.name != "own"
         )
 
     def of(self, step: Transition) -> Reward:
@@ -146,6 +151,11 @@ class RewardSettings:
 USUAL = RewardSettings()
 
 
+def _short(number: float) -> str:
+    """Return a number that reads back as the very same, without a needless ``.0``."""
+    return f"{number:g}" if float(f"{number:g}") == number else repr(number)
+
+
 def _penalty(key: str, text: str) -> float:
     try:
         value = float(text)
@@ -161,8 +171,8 @@ class Reward:
     """The reward of one decision, in parts.
 
     Over an episode that reaches the goal, time and progress sum to minus its delay: the time
-    beyond that of driving the distance at full speed. Progress depends only on where the robot is,
-    so it does not change which behaviour is best (potential-based shaping).
+    beyond that of driving the distance at full speed. Without a discount progress changes nothing
+    of which behaviour is best, because it depends only on where the robot is.
 
     Attributes:
         time: Minus the time that passed (s); at most 0.
@@ -189,7 +199,7 @@ class Reward:
         return self.time + self.contact + self.given_up + self.own
 
     def parts(self) -> dict[str, float]:
-        """Return the parts by name."""
+        """Return the parts of the usual reward by name."""
         return {
             "time": self.time,
             "progress": self.progress,

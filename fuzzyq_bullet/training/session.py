@@ -21,7 +21,7 @@ from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import load_scenario, realise
 from fuzzyq_bullet.scenario.models import Drive
 from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
-from fuzzyq_bullet.training.registry import RECIPES, learn, recipe_of
+from fuzzyq_bullet.training.registry import RECIPES, learn, recipe_of, refuse_unfit
 from fuzzyq_bullet.training.tasks import MOST_SEED, Tasks
 from fuzzyq_bullet.version import __version__
 from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
@@ -178,6 +178,7 @@ def config_for(
         raise UserError(f"--episodes: must be from 1 to {MAX_EPISODES}, got {episodes}")
     if not 0 <= seed <= MOST_SEED:
         raise UserError(f"--seed: must be from 0 to {MOST_SEED}, got {seed}")
+    refuse_unfit(RECIPES[planner], options)
     drives: tuple[Drive, ...] = get_args(Drive)
     for known_drive in drives:
         if drive == known_drive:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,8 +11,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from fuzzyq_bullet.figures import curves, rule_weights
 from fuzzyq_bullet.fuzzy import paper_controller
 from fuzzyq_bullet.learning import load_policy
+from fuzzyq_bullet.learning.checkpoint import ROW
 from fuzzyq_bullet.planning.fuzzy_q_lambda import RULE_NAMES, firing, weighed, weights_of
 from fuzzyq_bullet.planning.policies import shipped
 
@@ -38,8 +41,11 @@ def test_the_weights_of_every_rule_are_told_alone_or_with_what_is_sensed(inside:
 @pytest.mark.parametrize(
     ("args", "words"),
     [
-        ((), "D: missing; give D and DF, or --policy"),
+        ((), "D: missing; give D and DF, or neither and --policy"),
         ((1,), "DF: missing"),
+        ((2, "--policy", "shipped"), "DF: missing; give D and DF, or neither and --policy"),
+        (("--policy", ""), "policy: "),
+        (("--policy", "x" * 5000), "policy: "),
         (("--policy", "nowhere.json"), "nowhere.json: the policy of fuzzy-q-lambda cannot be read"),
         (("--policy", shipped("q-lambda")), "is a policy of the planner 'q-lambda'"),
     ],
@@ -72,12 +78,31 @@ def test_pictures_of_what_was_learned_are_drawn_and_known_again(
             done = fuzzyq("figure", name, *given, "--out", tmp_path)
             assert (done.returncode, done.stdout) == (0, f"{tmp_path / name}.png\n"), done.stderr
         with Image.open(tmp_path / f"{name}.png") as image:
-            assert np.asarray(image.convert("L")).std() > 10.0
+            assert image.width > 1000
+
+
+def test_the_picture_of_weights_has_every_number_where_the_film_has_its_rule() -> None:
+    weights = np.arange(50.0).reshape(25, 2)
+    step, turn = rule_weights.picture(weights, "title").axes
+    for axes, column in ((step, 0), (turn, 1)):
+        shown = {text.get_position(): text.get_text() for text in axes.texts}
+        table = weights[:, column].reshape(5, 5)[:, ::-1]  # left freer on the left
+        assert shown == {(c, r): f"{table[r, c]:g}" for r in range(5) for c in range(5)}
+
+
+def test_every_curve_is_drawn_and_named_whatever_its_file_is_called() -> None:
+    curve = np.zeros(3, ROW)
+    names = ["_under", "$\\frac$", "same", "same", "例"]
+    figure = curves.picture([(name, curve) for name in names])
+    assert [len(axes.lines) for axes in figure.axes] == [5, 5]
+    assert len(figure.legends[0].get_texts()) == 5
+    figure.savefig(io.BytesIO())  # draws no formula, and misses no letter
 
 
 @pytest.mark.parametrize(
     ("args", "words"),
     [
+        (("curves", "."), "POLICY: '.' is no file"),
         (("curves",), "POLICY: give 1 to 14 policies"),
         (("curves", shipped("q-lambda")), "no learning curve beside it"),
         (("weights", "a.json", "b.json"), "POLICY: weights shows one policy, got 2"),

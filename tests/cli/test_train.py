@@ -190,8 +190,21 @@ MISTAKES: dict[tuple[str, ...], list[str]] = {
     (PLANNER, "--out", "policy.npz"): ["--out: ", ".json", "'policy.npz'"],
     (PLANNER, "--out", "/proc/no/policy.json"): ["/proc/no: not a folder that can be written to"],
     (PLANNER, "--resume", "--anew"): ["--resume", "--anew"],
+    ("q-learning", "--trace", "0.9"): ["--trace: ", "q-learning", "has no traces"],
     (PLANNER, "--scenario", "x/" * 1500): ["--scenario", "too long for the policy"],
 }
+
+
+def test_what_is_wrong_in_an_options_file_is_named_there(tmp_path: Path) -> None:
+    path = tmp_path / "how.yaml"
+    for text, told in (
+        ("trace: 0.5\nepisodes: 0\n", f"{path}:2: episodes: must be from 1"),
+        ("drive: weels\n", f"{path}:1: drive: "),
+        ("seed: -1\n", f"{path}:1: seed: must be from 0"),
+    ):
+        path.write_text(text)
+        assert refused("train", PLANNER, "--options", path).startswith(told)
+    assert refused("train", PLANNER, "--options", path, "--seed", -2).startswith("--seed: ")
 
 
 @pytest.mark.parametrize("args", MISTAKES, ids=lambda args: " ".join(args)[:60])

@@ -327,6 +327,22 @@ def test_what_was_tried_counts_for_itself_and_not_for_what_went_before() -> None
     assert learner.table[0] == pytest.approx([0.1 * -2.0 + 0.1 * -3.0, -1.0])
 
 
+@pytest.mark.parametrize("kind", ["accumulating", "replacing"])
+def test_values_do_not_grow_beyond_what_can_be_lost_however_much_is_tried(kind: TraceKind) -> None:
+    learner, rng = FuzzyQLambda(3, 3, discount=1.0, kind=kind), np.random.default_rng(0)
+    for _ in range(400):
+        learner.begin(0.05, 0.9)
+        state = rng.dirichlet(np.ones(3))
+        for step in range(20):
+            after = rng.dirichlet(np.ones(3))
+            chosen = learner.choose(state, 0.5, rng)
+            cost = 1.0 + float(state @ np.array(chosen))
+            learner.learn(state, chosen, -cost, None if step == 19 else after)
+            state = after
+    # An episode costs 20 to 60; with the error of what was tried in the traces it is 1e9 and more.
+    assert -60.0 < learner.table.min() < learner.table.max() < 0.0
+
+
 @given(steps=STEPS, kind=KINDS, trace_decay=UNIT)
 def test_twins_learn_alike_from_whatever_happens_to_either(
     steps: list[tuple[int, int, float, int | None]], kind: TraceKind, trace_decay: float
