@@ -18,7 +18,7 @@ from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.cli.study import printed
 from fuzzyq_bullet.studies import FieldsPlan, Swept
 from fuzzyq_bullet.studies.episodes import Row
-from fuzzyq_bullet.studies.options import PAPER, described
+from fuzzyq_bullet.studies.options import GUARDED, PAPER, described
 from fuzzyq_bullet.studies.plan import LIMITS, M_S
 from fuzzyq_bullet.studies.selection import Weights
 from fuzzyq_bullet.studies.statistics import share
@@ -291,3 +291,13 @@ def test_a_mistake_is_one_line_and_nothing_is_run(
     assert "\n" not in line
     assert all(word in line for word in MISTAKES[options])
     assert not list(tmp_path.iterdir())
+
+
+def test_more_planners_than_fit_stand_in_a_second_table(inside: Call, tmp_path: Path) -> None:
+    planners = ",".join((*PAPER, *GUARDED))
+    given = ("--counts", "3", "--runs", 1, "--planners", planners, "--out", tmp_path)
+    with no_workers():
+        shown = inside("bench", "success", *given).stdout
+    head = [line for line in shown.splitlines() if "obstacles" in line and "runs" in line]
+    assert len(head) == 4  # over all, and over those that have a way, each in two
+    assert all(sum(name in line.split() for line in head) == 2 for name in (*PAPER, *GUARDED))

@@ -41,6 +41,8 @@ HOW_FAILURES_COUNT = (
 )
 HEADLINE = (25, 75, 125)
 """Numbers of obstacles of the first table of a page, where they were run."""
+SIDE_BY_SIDE = 5
+"""Most planners in one table."""
 MOST_COLUMNS = 4
 
 
@@ -124,25 +126,32 @@ class Success(Study):
         )
 
 
-def _tables(summary: Summary, about: str, steps: int) -> tuple[Table, Table]:
-    """Return success over all environments, and over those that have a way."""
+def _tables(summary: Summary, about: str, steps: int) -> tuple[Table, ...]:
+    """Return success over all environments, and over those that have a way.
+
+    A table has at most ``SIDE_BY_SIDE`` planners; more would not fit into a terminal.
+    """
     captions = (
         f"Success over all environments, with Wilson's 95 % intervals. {about}. "
         f"{HOW_FAILURES_COUNT} M_s is {steps}.",
         "The same over the environments that have a way for a disc of radius 0.22 m (the robot's "
         "is 0.20).",
     )
-    columns = ("obstacles", "runs", *summary.planners)
     made = []
     for caption, whole in zip(captions, (True, False), strict=True):
-        rows = []
-        for line in (*summary.lines, summary.total):
-            cells = [line.cells[name] for name in summary.planners]
-            runs = line.environments if whole else line.feasible
-            shares = [cell(one.all if whole else one.feasible) for one in cells]
-            rows.append(["all" if line.count is None else str(line.count), str(runs), *shares])
-        made.append(Table(caption, columns, rows, left=(), total=True))
-    return made[0], made[1]
+        for first in range(0, len(summary.planners), SIDE_BY_SIDE):
+            names = summary.planners[first : first + SIDE_BY_SIDE]
+            rows = []
+            for line in (*summary.lines, summary.total):
+                runs = line.environments if whole else line.feasible
+                shares = [line.cells[name] for name in names]
+                told = [cell(one.all if whole else one.feasible) for one in shares]
+                count = "all" if line.count is None else str(line.count)
+                rows.append([count, str(runs), *told])
+            columns = ("obstacles", "runs", *names)
+            said = caption if first == 0 else "The same of the other planners."
+            made.append(Table(said, columns, rows, left=(), total=True))
+    return tuple(made)
 
 
 def _headline(summary: Summary, drive: str) -> Table:
