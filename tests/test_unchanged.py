@@ -5,7 +5,7 @@ A change of behaviour that is meant is recorded anew, and CHANGELOG.md tells of 
     python tests/test_unchanged.py
 
 Only Linux on x86-64 is compared: elsewhere the last bit of a sine may differ. The scenarios of the
-figures are run, and compared, by experiments/test_figure_panels.py.
+figures are run, and compared, by figures/test_figure_panels.py.
 """
 
 from __future__ import annotations
