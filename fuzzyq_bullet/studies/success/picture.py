@@ -124,7 +124,7 @@ def _finish(figure: Figure, first: Axes, last: Axes, counts: Counts) -> None:
     ticks = FixedLocator(counts.tolist()) if few else MaxNLocator("auto", integer=True)
     last.xaxis.set_major_locator(ticks)
     figure.legend(
-        *first.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=10,
+        *first.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=10,
         frameon=False, handlelength=3.2,
     )  # fmt: skip
 
