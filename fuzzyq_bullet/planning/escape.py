@@ -63,7 +63,7 @@ class Escape:
         self._mark = math.nan
 
     def know(self, to_go: ToGo) -> None:
-        """Choose ways out by the true way on from now on (``studies.escape.bounds``)."""
+        """Choose ways out by the true way on from now on: for bounds and training only."""
         self._graph.know(to_go)
 
     def aim(self, observation: Observation, breakout_at: float) -> Aim:

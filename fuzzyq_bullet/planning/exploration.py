@@ -75,7 +75,7 @@ class ExplorationGraph:
         self._to_go: ToGo | None = None
 
     def know(self, to_go: ToGo) -> None:
-        """Judge frontiers by the true way on from now on (``studies.escape.bounds``)."""
+        """Judge frontiers by the true way on from now on: for bounds and training only."""
         self._to_go = to_go
 
     def pass_by(self, here: Point) -> None:
