@@ -32,7 +32,7 @@ class ImprovedFuzzyBase:
         self.mode: Mode = "routine"
 
     def know(self, to_go: ToGo) -> None:
-        """Choose ways out by the true way on, which no robot knows: for bounds and training only."""
+        """Choose ways out by the true way on, which no robot knows: for bounds and training."""
         if self._escape is not None:
             self._escape.know(to_go)
 
