@@ -11,12 +11,9 @@ from matplotlib.figure import Figure
 from fuzzyq_bullet.figures import MARK
 from fuzzyq_bullet.figures.style import INK, new_figure, plain, save_png
 from fuzzyq_bullet.files import writable_folder
-from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE
+from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE, NEAR_WORDS, SIDE_WORDS
 from fuzzyq_bullet.fuzzy.sets import Floats
 from fuzzyq_bullet.planning.fuzzy_q_lambda import learned_policy, weights_of
-
-NEAR = ("very near", "near", "medium", "far", "very far")
-SIDES = ("right\nmuch freer", "right\nfreer", "alike", "left\nfreer", "left\nmuch freer")
 
 
 def draw(out: Path, policy: Path | None = None) -> list[Path]:
@@ -59,12 +56,13 @@ def _table(axes: Axes, name: str, table: Floats) -> None:
     for (row, column), value in np.ndenumerate(mirrored):
         ink = "white" if shades[row, column] < 0.6 else INK
         axes.text(column, row, f"{value:g}", ha="center", va="center", color=ink, fontsize=13)
-    axes.set_xticks(range(len(SIDES)), SIDES[::-1], fontsize=9)
-    axes.set_yticks(range(len(NEAR)), NEAR, fontsize=10)
+    sides = [words.replace(" ", "\n", 1) for words in reversed(SIDE_WORDS)]
+    axes.set_xticks(range(len(sides)), sides, fontsize=9)
+    axes.set_yticks(range(len(NEAR_WORDS)), NEAR_WORDS, fontsize=10)
     axes.set_ylabel("free distance towards the aim")
     axes.set_title(name, fontsize=12, color=INK)
-    axes.set_xticks(np.arange(-0.5, len(SIDES)), minor=True)
-    axes.set_yticks(np.arange(-0.5, len(NEAR)), minor=True)
+    axes.set_xticks(np.arange(-0.5, len(sides)), minor=True)
+    axes.set_yticks(np.arange(-0.5, len(NEAR_WORDS)), minor=True)
     axes.grid(which="minor", color="white", lw=2)
     axes.tick_params(which="both", length=0)
     for spine in axes.spines.values():

@@ -42,6 +42,11 @@ DIFFERENCE = Variable.parse(
 )
 """Df = left − right (Eq. 14), in S_p. PB is not the mirror of NB; it is kept as printed."""
 
+NEAR_WORDS = ("very near", "near", "medium", "far", "very far")
+"""What the sets of ``DISTANCE`` mean to a robot."""
+SIDE_WORDS = ("right much freer", "right freer", "alike", "left freer", "left much freer")
+"""What the sets of ``DIFFERENCE`` mean to a robot."""
+
 # Table 3 is printed up to VL, L and NL only. Neighbouring sets cross at a membership of 0.5
 # everywhere else; that and symmetry leave one completion. The paper also swaps the two domains:
 # read literally, the robot reverses.

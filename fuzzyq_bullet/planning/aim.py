@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Mode
@@ -34,6 +34,17 @@ class Aim(NamedTuple):
     reach: float = math.inf
     target: Point = NOWHERE
     hopeless: bool = False
+
+    def told(self) -> dict[str, Any]:
+        """Return what a decision on the way there tells of it, by the decision's fields."""
+        return {
+            "reach": self.reach,
+            "mode": self.mode,
+            "target": self.target,
+            "aim": self.point,
+            "exact": float(self.exact),
+            "hopeless": self.hopeless,
+        }
 
 
 def towards_goal(observation: Observation) -> Aim:

@@ -122,8 +122,6 @@ class Routine:
         return Decision(
             heading=aim.bearing + turn,
             step=min(step, aim.distance) if situation.jumps else step,
-            reach=aim.reach,
-            mode=aim.mode,
             lines=situation.lines,
             lengths=situation.lengths,
             distance=situation.distance,
@@ -135,10 +133,7 @@ class Routine:
             stride=inferred.stride,
             weights=weights,
             breakout_at=breakout_at,
-            target=aim.target,
-            aim=aim.point,
-            exact=float(aim.exact),
-            hopeless=aim.hopeless,
+            **aim.told(),
         )
 
 

@@ -154,10 +154,5 @@ def _towards(aim: Aim, decision: Decision) -> Decision:
     return decision._replace(
         heading=aim.bearing if aim.exact else decision.heading,
         step=0.0 if aim.hopeless else decision.step,
-        reach=aim.reach,
-        mode=aim.mode,
-        target=aim.target,
-        aim=aim.point,
-        exact=float(aim.exact),
-        hopeless=aim.hopeless,
+        **aim.told(),
     )

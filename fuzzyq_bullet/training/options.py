@@ -81,19 +81,18 @@ def read_options(path: Path) -> tuple[LearningOptions, dict[str, Any], dict[str,
     Raises:
         UserError: If it cannot be read or is wrong; one line with file, line and key.
     """
+    known = [*_READERS, *_PLAIN]
     content = read_bytes(path, what="an options file", most=MAX_BYTES)
     text = content.decode("utf-8", "replace")
     if not text.strip():
-        raise UserError(f"{path}: is empty; it may have the keys {', '.join([*_READERS, *_PLAIN])}")
+        raise UserError(f"{path}: is empty; it may have the keys {', '.join(known)}")
     tree = read_tree(text, str(path))
-    known = [*_READERS, *_PLAIN]
-    places: dict[str, str] = {}
     if not isinstance(tree.data, dict):
         raise UserError(
             f"{path}:{tree.line}: expected a mapping with any of the keys {', '.join(known)}, "
             f"got {shorten(tree.data)}"
         )
-    texts, plain = {}, {}
+    options, plain, places = AS_USUAL, dict[str, Any](), dict[str, str]()
     for key, value in tree.data.items():
         where = f"{path}:{tree.line_of(key)}: {key}"
         if key in _PLAIN:
@@ -103,15 +102,17 @@ def read_options(path: Path) -> tuple[LearningOptions, dict[str, Any], dict[str,
             plain[key], places[key] = value, where
         elif key in _READERS:
             try:
-                texts[key] = _as_text(value)
+                text = _as_text(value)
             except UserError as error:
                 raise UserError(f"{where}: {error.problems[0]}") from error
-            LearningOptions.parse({key: texts[key]}, f"{path}:{tree.line_of(key)}: ")
+            options = options.changed_by(
+                LearningOptions.parse({key: text}, f"{path}:{tree.line_of(key)}: ")
+            )
         else:
             raise UserError(
                 f"{where}: unknown key; {did_you_mean(key, known)}allowed: {', '.join(known)}"
             )
-    return LearningOptions.parse(texts), plain, places
+    return options, plain, places
 
 
 def _as_text(value: Any) -> str:

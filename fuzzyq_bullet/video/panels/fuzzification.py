@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image, ImageDraw
 
-from fuzzyq_bullet.fuzzy.paper import RULES
+from fuzzyq_bullet.fuzzy.paper import NEAR_WORDS, RULES, SIDE_WORDS
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import aim_name, is_clear
 from fuzzyq_bullet.video.panels.base import Canvas
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.sets import Variable
     from fuzzyq_bullet.trajectory import Trajectory
     from fuzzyq_bullet.video.footprints import Floats
-
-NEAR_WORDS = ("very near", "near", "medium", "far", "very far")
-SIDE_WORDS = ("right much freer", "right freer", "alike", "left freer", "left much freer")
 
 _PLOT_HEIGHT = 46
 _LEFT = 14

@@ -14,13 +14,14 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.fuzzy.paper import NEAR_WORDS
 from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, weights_of
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, WeightsSettings
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import is_asked
 from fuzzyq_bullet.video.panels.base import Canvas
-from fuzzyq_bullet.video.panels.fuzzification import NEAR_WORDS, rule_base
+from fuzzyq_bullet.video.panels.fuzzification import rule_base
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
