@@ -18,6 +18,7 @@ from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner
 from fuzzyq_bullet.planning.decision import DecisionError, checked
 from fuzzyq_bullet.scenario import check, realise
+from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.models import Limits, Scenario
 from fuzzyq_bullet.trajectory import Outcome, Trajectory
 
@@ -48,14 +49,16 @@ def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
 
 
 def planner_of(scenario: Scenario) -> Planner:
-    """Build the planner that a scenario asks for, for one episode.
+    """Build the planner that a realised scenario asks for, for one episode.
 
     Raises:
-        UserError: If there is no such planner, or its policy cannot be used.
+        UserError: If there is no such planner, or its policy cannot be used, as one that was
+            learned in another field.
         PlannerError: If building it fails.
     """
     # The first stream of the seed places the obstacles; the planner has the second to itself.
     rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(1,)))
+    refuse_other_field(scenario)
     return build_planner(scenario.planner, rng)
 
 

@@ -17,6 +17,7 @@ HOW: dict[str, Any] = {"rich_help_panel": "Changes to how it learns"}
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.learning.checkpoint import Curve
+    from fuzzyq_bullet.training.field import FieldTask
     from fuzzyq_bullet.training.session import TrainingConfig, TrainingFiles, TrainingProgress
     from fuzzyq_bullet.training.tasks import Tasks
 
@@ -25,15 +26,20 @@ def train(
     planner: Annotated[str, typer.Argument(metavar="PLANNER", help="Planner that learns.")],
     *,
     episodes: Annotated[
-        int | None, typer.Option(help="Episodes to learn from.", show_default="200")
+        int | None,
+        typer.Option(help="Episodes to learn from.", show_default="200; 50 to learn one field"),
     ] = None,
     drive: Annotated[
         str | None,
-        typer.Option(help="kinematic, or wheels (physics).", show_default="kinematic"),
+        typer.Option(
+            help="kinematic, or wheels (physics).", show_default="kinematic; that of the field"
+        ),
     ] = None,
     scenario: Annotated[
         str | None,
-        typer.Option(help="Learn on this file or bundled scenario, not on random fields."),
+        typer.Option(
+            help="Learn on this file or bundled scenario; fuzzy-q-lambda learns its field."
+        ),
     ] = None,
     seed: Annotated[
         int | None, typer.Option(help="Seed of the training.", show_default="0")
@@ -123,8 +129,8 @@ def train(
     try:
         config = config_for(
             planner,
-            plain.get("episodes", 200),
-            plain.get("drive", "kinematic"),
+            plain.get("episodes"),
+            plain.get("drive"),
             plain.get("seed", 0),
             scenario,
             asked.changed_by(LearningOptions.parse(given)),
@@ -163,14 +169,14 @@ def train(
 
 def _learn(
     config: TrainingConfig,
-    tasks: Tasks,
+    tasks: Tasks | FieldTask,
     files: TrainingFiles,
     progress: TrainingProgress,
     *,
     resume: bool,
 ) -> Curve:
     """Train with a progress bar, and draw the learning curve."""
-    from fuzzyq_bullet.training.session import learn_policy, title_of
+    from fuzzyq_bullet.training.session import learn_policy, most_of, title_of
 
     with progress_bar("training", config.episodes) as (bar, task):
 
@@ -183,8 +189,11 @@ def _learn(
 
     from fuzzyq_bullet.figures.learning_curve import picture
     from fuzzyq_bullet.figures.style import save_png
+    from fuzzyq_bullet.training.field import FieldTask
 
-    save_png(picture(curve, title_of(config, tasks)), files.picture)
+    title, bound = title_of(config, tasks), most_of(tasks)
+    same = isinstance(tasks, FieldTask)
+    save_png(picture(curve, title, same=same, bound=bound), files.picture)
     return curve
 
 
@@ -196,8 +205,20 @@ def _tell(config: TrainingConfig, summary: dict[str, Any]) -> None:
     else:
         pace = f"all {before} episodes were done already"
     say(f"{config.planner}: {pace} ({config.drive}, seed {config.seed})", style="bold")
-    first, last = (100 * summary[key] for key in ("success_first", "success_last"))
-    window = summary["window"]
-    say(f"goal reached in {first:.0f} % of the first {window} episodes, {last:.0f} % of the last")
+    say(_gain(summary))
     for key in ("policy", "picture", "checkpoint"):
         say(f"  {summary[key]}")
+
+
+def _gain(summary: dict[str, Any]) -> str:
+    if "first_s" not in summary:
+        first, last = (100 * summary[key] for key in ("success_first", "success_last"))
+        window = f"the first {summary['window']} episodes"
+        return f"goal reached in {first:.0f} % of {window}, {last:.0f} % of the last"
+    if summary["fastest_run"] is None:
+        return "the goal was reached in no run"
+    return (
+        f"the first run took {summary['first_s']:.1f} s, the fastest (number "
+        f"{summary['fastest_run']}) {summary['fastest_s']:.1f} s; contacts in "
+        f"{summary['collisions']} of {summary['episodes']} runs"
+    )

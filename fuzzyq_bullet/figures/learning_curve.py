@@ -45,18 +45,24 @@ _OUTLIERS = 0.02
 """Share of the episodes that may lie so low that they are only hinted at."""
 
 
-def picture(curve: Curve, title: str) -> Figure:
+def picture(curve: Curve, title: str, *, same: bool = False, bound: float | None = None) -> Figure:
     """Return the figure: above what every episode earned, below the share that reached the goal.
 
     Args:
         curve: A row for each episode (``learning.train``).
         title: What was trained, in one line.
+        same: Whether all episodes are the same task. Then the best so far is shown, and not a
+            mean.
+        bound: What an episode could earn at most (s), if that is known.
     """
     figure = new_figure(9.6, 6.6)
     figure.get_layout_engine().set(w_pad=0.12, h_pad=0.1)  # type: ignore[union-attr,call-arg]
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     episodes = np.arange(1, len(curve) + 1)
-    _returns(above, episodes, curve)
+    _returns(above, episodes, curve, same=same)
+    if bound is not None:
+        above.axhline(bound, color=GREEN, lw=2.0, ls="--", label="shortest path at full speed")
+    _legend(above, len(curve))
     _success(below, episodes, curve)
     below.set_xlabel("episode", fontsize=12)
     margin = max(0.5, 0.01 * len(curve))
@@ -66,8 +72,8 @@ def picture(curve: Curve, title: str) -> Figure:
     return figure
 
 
-def _returns(axes: Axes, episodes: NDArray[np.int64], curve: Curve) -> None:
-    size = 26 if len(curve) <= 400 else 10
+def _returns(axes: Axes, episodes: NDArray[np.int64], curve: Curve, *, same: bool) -> None:
+    size = _size(len(curve))
     totals, floor = curve["total"], _floor(curve["total"])
     outcomes = np.char.decode(curve["outcome"], "ascii")
     kinds = np.where(np.isin(outcomes, list(MARKS)), outcomes, OTHERWISE)
@@ -79,10 +85,14 @@ def _returns(axes: Axes, episodes: NDArray[np.int64], curve: Curve) -> None:
                 facecolor=mark.colour, edgecolor="white", linewidth=0.4, alpha=0.8,
                 label=f"{mark.words} ({ended.sum()})", zorder=5, clip_on=False,
             )  # fmt: skip
-    mean = last_mean(totals)
+    line, words = last_mean(totals), _mean_of(curve)
+    if same:
+        line = np.maximum.accumulate(np.where(reached(curve), totals, totals.min()))
+        words = "fastest so far"
     axes.plot(
-        episodes, mean, color=INK, lw=2.4, marker=_alone(curve), label=_mean_of(curve), zorder=6
-    )
+        episodes, line, color=INK, lw=2.4, marker=_alone(curve), label=words, zorder=6,
+        drawstyle="steps-post" if same else "default",
+    )  # fmt: skip
     if floor > totals.min():
         axes.set_ylim(bottom=floor)
         axes.annotate(
@@ -93,10 +103,19 @@ def _returns(axes: Axes, episodes: NDArray[np.int64], curve: Curve) -> None:
     axes.set_ylabel("return of an episode (s)", fontsize=12)
     tidy(axes, "both")
     axes.tick_params(labelsize=11)
+
+
+def _legend(axes: Axes, episodes: int) -> None:
     axes.legend(
         loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False, fontsize=11,
-        columnspacing=1.4, handletextpad=0.4, handlelength=1.4, markerscale=(26 / size) ** 0.5,
+        columnspacing=1.4, handletextpad=0.4, handlelength=1.4,
+        markerscale=(26 / _size(episodes)) ** 0.5,
     )  # fmt: skip
+
+
+def _size(episodes: int) -> float:
+    """Return how large the mark of an episode is."""
+    return 26.0 if episodes <= 400 else 10.0
 
 
 def _floor(totals: NDArray[np.float64]) -> float:

@@ -3,7 +3,7 @@
 from fuzzyq_bullet.planning.base import Motion, Observation, Planner, RangeSensor
 from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
-from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, FuzzyQLambdaPlanner
+from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS, DirectPlanner
@@ -67,5 +67,5 @@ register_planner(
 register_planner(
     "fuzzy-q-lambda",
     FuzzyQLambdaSettings,
-    lambda settings, rng: FuzzyQLambdaPlanner(settings, policy_of(settings, POLICY_SPEC)),
+    lambda settings, rng: FuzzyQLambdaPlanner(settings),
 )

@@ -16,7 +16,7 @@ import math
 from fuzzyq_bullet.planning.aim import Aim, along_heading, towards_goal
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Mode
-from fuzzyq_bullet.planning.exploration import NEAR, ExplorationGraph, ToGo
+from fuzzyq_bullet.planning.exploration import NEAR, ExplorationGraph, Judge
 from fuzzyq_bullet.planning.frontiers import Frontier
 from fuzzyq_bullet.planning.path_follower import NEARER, PathFollower
 from fuzzyq_bullet.planning.ray_search import eased, ray_search
@@ -46,11 +46,13 @@ class Escape:
     Args:
         following: Whether the avoidance is sustained. If not, it is the plain breakout of Fig. 6,
             which remembers nothing.
+        graph: What is known from episodes before, if anything is.
     """
 
-    def __init__(self, *, following: bool = True) -> None:
+    def __init__(self, *, following: bool = True, graph: ExplorationGraph | None = None) -> None:
         self._follows = following
-        self._graph = ExplorationGraph()
+        self._graph = graph or ExplorationGraph()
+        self._knows_the_way = self._graph.leads_to_goal
         self._frontier: Frontier | None = None
         self._follower = PathFollower([])
         self._mode: Mode = "breakout"
@@ -62,9 +64,9 @@ class Escape:
         self._straight = False
         self._mark = math.nan
 
-    def know(self, to_go: ToGo) -> None:
-        """Choose ways out by the true way on from now on: for bounds and training only."""
-        self._graph.know(to_go)
+    def choose_by(self, judge: Judge) -> None:
+        """Let somebody else judge ways out from now on."""
+        self._graph.judge = judge
 
     def aim(self, observation: Observation, breakout_at: float) -> Aim:
         """Return the goal, or a temporary goal where the way to it is blocked.
@@ -81,6 +83,10 @@ class Escape:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._graph.pass_by(here)
 
+        if self._knows_the_way:
+            self._knows_the_way = False
+            self._scan(observation)
+            self._mode = "following"
         if self._frontier is not None:
             nearer = middle >= to_goal or to_goal - middle <= self._mark - GAIN * observation.unit
             if not nearer or middle < enough:
@@ -108,14 +114,14 @@ class Escape:
         """Scan all around, and choose the frontier to go to."""
         self._graph.scan(observation)
         self._scanned_at = observation.position
-        self._frontier, path = self._graph.best_frontier(observation.goal) or (None, [])
+        self._frontier, path = self._graph.best_frontier(observation) or (None, [])
         self._follower = PathFollower(path)
 
     def _scan_again(self, observation: Observation, tried: Frontier) -> None:
         """Scan on the way to a frontier, and go for another if that has become better."""
         self._graph.scan(observation)
         self._scanned_at = observation.position
-        best = self._graph.best_frontier(observation.goal, tried, BETTER)
+        best = self._graph.best_frontier(observation, tried, BETTER)
         if best is None:
             self._frontier = None
         elif best[0] != tried:
@@ -123,6 +129,8 @@ class Escape:
             self._mode = "following"
             self._frontier, path = best
             self._follower = PathFollower(path)
+        elif self._graph.leads_to_goal:  # a long way may have become shorter
+            self._follower = PathFollower(best[1])
 
     def _follow(self, observation: Observation) -> Aim:
         """Drive to the chosen frontier; if it is reached or cannot be reached, to the next one.

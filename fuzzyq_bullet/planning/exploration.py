@@ -6,7 +6,7 @@ import heapq
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
@@ -36,6 +36,52 @@ that lies in no obstacle. A gap is entered. Elsewhere what lies before the point
 free, and so is, where the sight ended and nothing stood, what lies between the two."""
 
 
+class Judge(Protocol):
+    """Says what the way to the goal over each frontier costs; the least is chosen."""
+
+    def __call__(
+        self,
+        observation: Observation,
+        points: Sequence[Point],
+        ways: Sequence[float],
+        guess: Callable[[], Sequence[float]],
+        /,
+    ) -> Sequence[float]:
+        """Return the costs, in any unit.
+
+        Args:
+            observation: What is observed.
+            points: Where the frontiers are (m).
+            ways: Length of the known path to each (m).
+            guess: Tells how long the path on from each may be at least (m), by what was seen.
+        """
+        ...
+
+
+def as_it_looks(
+    observation: Observation,
+    points: Sequence[Point],
+    ways: Sequence[float],
+    guess: Callable[[], Sequence[float]],
+) -> list[float]:
+    """Judge frontiers by what was seen in this episode: the planner's own way (``Judge``)."""
+    return [way + on for way, on in zip(ways, guess(), strict=True)]
+
+
+def knowing(to_go: ToGo) -> Judge:
+    """Return who judges frontiers by the true way on: for bounds and training only."""
+
+    def judge(
+        observation: Observation,
+        points: Sequence[Point],
+        ways: Sequence[float],
+        guess: Callable[[], Sequence[float]],
+    ) -> list[float]:
+        return [way + to_go(*point) for way, point in zip(ways, points, strict=True)]
+
+    return judge
+
+
 @dataclass(slots=True)
 class Node:
     """Where the robot was.
@@ -63,20 +109,34 @@ class Node:
 
 
 class ExplorationGraph:
-    """What one episode has explored."""
+    """What a robot has explored: in one episode, or in several of the same field.
+
+    Attributes:
+        judge: Says which frontier is the best.
+        leads_to_goal: Whether the goal was reached in an episode before.
+    """
 
     def __init__(self) -> None:
+        self.judge: Judge = as_it_looks
         self._nodes: list[Node] = []
         self._scanned: list[Node] = []  # those of them that have a scan
         self._frontiers: list[Frontier] = []
         self._obstacles = ObstacleMap()
         self._blacklist: list[Point] = []
         self._corners_too = False
-        self._to_go: ToGo | None = None
+        self._joined = False
+        self.leads_to_goal = False
 
-    def know(self, to_go: ToGo) -> None:
-        """Judge frontiers by the true way on from now on: for bounds and training only."""
-        self._to_go = to_go
+    def begin_again(self) -> None:
+        """Begin another episode in the same field: the robot is elsewhere, the map stays."""
+        self._joined = False
+
+    def arrive(self, goal: Point) -> None:
+        """Remember that the goal (m) was reached: it is a frontier with no way on."""
+        self.leads_to_goal = True
+        index = len(self._nodes) - 1
+        distance = math.dist(self._nodes[index].point, goal)
+        self._frontiers.append(Frontier(index, goal, 0.0, distance, goal))
 
     def pass_by(self, here: Point) -> None:
         """Add the path driven so far, up to a position (m)."""
@@ -100,12 +160,12 @@ class ExplorationGraph:
             self._remember(find_concave_corners(index, here, scan))
 
     def best_frontier(
-        self, goal: Point, kept: Frontier | None = None, switch: float = 0.0
+        self, observation: Observation, kept: Frontier | None = None, switch: float = 0.0
     ) -> tuple[Frontier, list[Point]] | None:
         """Return the frontier over which the path to the goal (m) may be the shortest.
 
         Args:
-            goal: The goal (m).
+            observation: What is observed.
             kept: The frontier that the robot is on its way to.
             switch: How much shorter the path over another one must be (m).
 
@@ -121,10 +181,12 @@ class ExplorationGraph:
         if not self._frontiers:
             return None
         lengths, before = shortest_paths(self._nodes)
-        to_them = [lengths[one.node] + one.distance for one in self._frontiers]
+        ways = [lengths[one.node] + one.distance for one in self._frontiers]
         if kept in self._frontiers:
-            to_them[self._frontiers.index(kept)] -= switch
-        chosen = self._cheapest(to_them, goal)
+            ways[self._frontiers.index(kept)] -= switch
+        points = [one.point for one in self._frontiers]
+        costs = self.judge(observation, points, ways, lambda: self._ways_on(ways, observation.goal))
+        chosen = self._frontiers[min(range(len(costs)), key=costs.__getitem__)]
         if kept in self._frontiers and math.dist(chosen.point, kept.point) <= NEAR:
             chosen = kept  # the same place, seen from elsewhere
         path, at = [chosen.point], chosen.node
@@ -144,9 +206,10 @@ class ExplorationGraph:
         index = len(self._nodes)
         node = Node(here)
         self._nodes.append(node)
-        if index:  # joined to the node before: that is how the robot got here
+        if self._joined:  # joined to the node before: that is how the robot got here
             last = self._nodes[index - 1]
             node.edges[index - 1] = last.edges[index] = math.dist(last.point, here)
+        self._joined = True
         return index
 
     def _remember(self, frontiers: Iterable[Frontier]) -> None:
@@ -156,25 +219,24 @@ class ExplorationGraph:
             if not any(_is_explored(found, node) for node in self._scanned):
                 self._frontiers.append(found)
 
-    def _cheapest(self, lengths: list[float], goal: Point) -> Frontier:
-        """Return the frontier with the shortest path to it (m, one for each) and on to the goal."""
-        if (to_go := self._to_go) is not None:
-            known = [
-                length + to_go(*one.point)
-                for length, one in zip(lengths, self._frontiers, strict=True)
-            ]
-            return self._frontiers[min(range(len(known)), key=known.__getitem__)]
-        costs = [
-            length + (DOUBT if one.beyond is None else 0.0) + math.dist(one.point, goal)
-            for length, one in zip(lengths, self._frontiers, strict=True)
-        ]
+    def _ways_on(self, ways: Sequence[float], goal: Point) -> list[float]:
+        """Return how long the path (m) from each frontier to the goal may be at least.
+
+        Args:
+            ways: Length of the known path to each (m).
+            goal: The goal (m).
+        """
+        points = [one.point for one in self._frontiers]
+        straight = [math.dist(point, goal) for point in points]
+        doubts = [DOUBT if one.beyond is None else 0.0 for one in self._frontiers]
+        costs = [way + doubt + on for way, doubt, on in zip(ways, doubts, straight, strict=True)]
         best = min(range(len(costs)), key=costs.__getitem__)
+        found = [doubt + on for doubt, on in zip(doubts, straight, strict=True)]
         # No path is shorter than the straight line: the obstacles count only if they cross it.
-        if not self._obstacles.in_sight(self._frontiers[best].point, goal):
+        if not self._obstacles.in_sight(points[best], goal):
             for k, around in enumerate(costs_to_go(self._frontiers, self._obstacles, goal)):
-                costs[k] += min(around - math.dist(self._frontiers[k].point, goal), ENCLOSED)
-            best = min(range(len(costs)), key=costs.__getitem__)
-        return self._frontiers[best]
+                found[k] += min(around - straight[k], ENCLOSED)
+        return found
 
 
 def costs_to_go(frontiers: Sequence[Frontier], obstacles: ObstacleMap, goal: Point) -> list[float]:

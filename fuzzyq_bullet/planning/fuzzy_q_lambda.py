@@ -25,8 +25,9 @@ from fuzzyq_bullet.learning import Policy, PolicySpec, greedy
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
+from fuzzyq_bullet.planning.learned_exits import LEARNER, LearnedExits, seconds_of
 from fuzzyq_bullet.planning.policies import policy_of
-from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
+from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, PlannerSettings
 from fuzzyq_bullet.wording import shorten
 
 
@@ -81,6 +82,32 @@ def learned_policy(file: str | None) -> Policy:
     return policy_of(settings, POLICY_SPEC)
 
 
+def rule_policy(settings: FuzzyQLambdaSettings) -> Policy:
+    """Return the weights of the rules: the shipped ones where the policy is that of a field.
+
+    Raises:
+        UserError: If the policy cannot be used.
+    """
+    if field_policy(settings) is not None:
+        settings = settings.model_copy(update={"policy": None})
+    return policy_of(settings, POLICY_SPEC)
+
+
+def field_policy(settings: PlannerSettings) -> Policy | None:
+    """Return the policy if it is one of a field, which holds what its ways out are worth.
+
+    Raises:
+        UserError: If it cannot be used.
+    """
+    if not isinstance(settings, FuzzyQLambdaSettings) or settings.policy is None:
+        return None
+    policy = policy_of(settings)
+    if (policy.planner, policy.learner) != (settings.name, LEARNER):
+        return None
+    seconds_of(policy, settings.policy)
+    return policy
+
+
 def weights_of(policy: Policy) -> NDArray[np.float64]:
     """Return what each rule thinks best, (ω1, ω2), shape (R, 2)."""
     return np.array([CHOICES[greedy(values)] for values in policy.table])
@@ -102,13 +129,18 @@ class FuzzyQLambdaPlanner(ImprovedFuzzyBase):
     """Weighs what the controller says by what each rule that fires has learned.
 
     Args:
-        settings: The planner's settings.
-        policy: What it learned: a row for each rule, a column for each choice of weights.
+        settings: The planner's settings; they name what it learned.
+
+    Raises:
+        UserError: If that cannot be used.
     """
 
-    def __init__(self, settings: FuzzyQLambdaSettings, policy: Policy) -> None:
+    def __init__(self, settings: FuzzyQLambdaSettings) -> None:
         super().__init__(settings)
-        self._weights = weights_of(policy)
+        self._weights = weights_of(rule_policy(settings))
+        field = field_policy(settings)
+        if field is not None:
+            self.choose_exits_by(LearnedExits(seconds_of(field, field.planner)).judge)
 
     def decide(self, observation: Observation, /) -> Decision:
         """Return the decision with the weights of the rules that fire (Step 10)."""

@@ -7,7 +7,7 @@ import math
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.escape import Escape
-from fuzzyq_bullet.planning.exploration import ToGo
+from fuzzyq_bullet.planning.exploration import ExplorationGraph, Judge, ToGo, knowing
 from fuzzyq_bullet.planning.fuzzy import Routine, Situation
 from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings, RecoverySettings
@@ -33,8 +33,17 @@ class ImprovedFuzzyBase:
 
     def know(self, to_go: ToGo) -> None:
         """Choose ways out by the true way on, which no robot knows: for bounds and training."""
+        self.choose_exits_by(knowing(to_go))
+
+    def keep_map(self, graph: ExplorationGraph) -> None:
+        """Begin with what was explored in episodes before, and add to it."""
         if self._escape is not None:
-            self._escape.know(to_go)
+            self._escape = Escape(graph=graph)
+
+    def choose_exits_by(self, judge: Judge) -> None:
+        """Let somebody else judge ways out from now on."""
+        if self._escape is not None:
+            self._escape.choose_by(judge)
 
     def sense(self, observation: Observation) -> Situation:
         """Choose the aim, and return what is seen towards it: the first half (Steps 4 to 9)."""

@@ -13,11 +13,14 @@ from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes, written_beside
+from fuzzyq_bullet.planning.fuzzy_q_lambda import field_policy
 from fuzzyq_bullet.planning.registry import make_planner
 from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.platforms import data_folder
 from fuzzyq_bullet.quantities import MAX_OBSTACLES
 from fuzzyq_bullet.scenario.checks import find_conflicts
+from fuzzyq_bullet.scenario.fields import refuse_other_field
+from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import (
     MAX_SHOWN,
@@ -98,7 +101,8 @@ def parse_scenario(
             scenario = _with_policy_in(scenario, folder)
         problems = [Problem(loc, message) for loc, message in find_conflicts(scenario)]
         if policies:
-            unfit = _policy_problem(scenario, planner_is_given="planner" in tree.data)
+            given = "planner" in tree.data
+            unfit = _policy_problem(scenario, planner_is_given=given, sound=not problems)
             problems += [unfit] if unfit else []
         if not problems:
             return scenario
@@ -135,18 +139,21 @@ def _with_policy_in(scenario: Scenario, folder: Path) -> Scenario:
     return scenario.model_copy(update={"planner": planner.model_copy(update={"policy": path})})
 
 
-def _policy_problem(scenario: Scenario, *, planner_is_given: bool) -> Problem | None:
+def _policy_problem(scenario: Scenario, *, planner_is_given: bool, sound: bool) -> Problem | None:
     """Return what keeps the planner from using its policy, if anything does.
 
     Args:
         scenario: The scenario, its policy where it lies.
         planner_is_given: Whether the file has a key ``planner`` at all.
+        sound: Whether all else is right, so that its obstacles can be drawn.
     """
     if not isinstance(scenario.planner, PolicySettings):
         return None
     try:
         # The planner itself knows best what fits it. What it would draw from is of no matter.
         make_planner(scenario.planner, np.random.default_rng(0))
+        if sound and field_policy(scenario.planner) is not None:
+            refuse_other_field(realise(scenario))
     except UserError as error:
         loc = ("planner", "policy") if planner_is_given else ("planner",)
         return Problem(loc, error.problems[0], missing=True)

@@ -14,6 +14,7 @@ _BUNDLED = {
     "steps": "fuzzyq_bullet.studies.steps.study",
     "learning": "fuzzyq_bullet.studies.learning.study",
     "escape": "fuzzyq_bullet.studies.escape.study",
+    "familiar": "fuzzyq_bullet.studies.familiar.study",
 }
 """The modules of the package's own, in the order of a report."""
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,49}")

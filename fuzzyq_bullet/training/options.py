@@ -55,14 +55,18 @@ class LearningOptions:
 
     def changed_by(self, other: LearningOptions) -> LearningOptions:
         """Return these, but for what the other has."""
-        given: dict[str, Any] = {one.name: getattr(other, one.name) for one in fields(other)}
-        return replace(self, **{name: one for name, one in given.items() if one is not None})
+        return replace(self, **other.given())
+
+    def given(self) -> dict[str, Any]:
+        """Return those that differ from the planner's own, by name."""
+        every: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(self)}
+        return {name: one for name, one in every.items() if one is not None}
 
     def words(self) -> list[str]:
         """Return the options as words of a command line."""
-        given = {one.name: getattr(self, one.name) for one in fields(self)}
-        shown = {name: value for name, value in given.items() if value is not None}
-        return [word for name, value in shown.items() for word in (f"--{name}", _written(value))]
+        return [
+            word for name, value in self.given().items() for word in (f"--{name}", _written(value))
+        ]
 
     def setup(self, usual: Setup) -> Setup:
         """Return how to train: as usual, but for the schedules that are given."""

@@ -27,6 +27,7 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC as RULE_WEIGHTS
 from fuzzyq_bullet.planning.fuzzy_q_lambda import TWINS
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS as DIRECT
 from fuzzyq_bullet.scenario import Drive, Scenario
+from fuzzyq_bullet.training.field import RUNS, field_setup, learn_field
 from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
 from fuzzyq_bullet.training.problems import DirectProblem, RuleWeightsProblem
 from fuzzyq_bullet.training.tasks import COUNTS, Tasks
@@ -46,6 +47,23 @@ ALL_COUNTS = (25, 50, 75, 100, 125)
 
 
 @dataclass(frozen=True)
+class FieldLearning:
+    """How a planner learns a single field.
+
+    Attributes:
+        learn: Learns it (``training.field.learn_field``).
+        setup: Builds the schedules from the number of runs and the seed.
+        runs: How many, unless more or fewer are asked for.
+        takes: The options of learning that it takes.
+    """
+
+    learn: Callable[..., tuple[Policy, Curve]]
+    setup: Callable[[int, int], Setup]
+    runs: int
+    takes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Recipe:
     """How a planner learns.
 
@@ -59,6 +77,8 @@ class Recipe:
         setup: Builds the schedules from the number of episodes and the seed.
         counts: Numbers of obstacles of the random scenarios.
         cellular: Whether it learns in corridors of clumped pillars too.
+        in_field: How it learns a single field instead, where a scenario is given; None: as it
+            learns everywhere.
     """
 
     planner: str
@@ -68,6 +88,18 @@ class Recipe:
     setup: Callable[[int, int], Setup]
     counts: tuple[int, ...] = COUNTS
     cellular: bool = False
+    in_field: FieldLearning | None = None
+
+    @property
+    def of_field(self) -> FieldLearning:
+        """How it learns a single field.
+
+        Raises:
+            LookupError: If in no way of its own.
+        """
+        if self.in_field is None:
+            raise LookupError(f"{self.planner} learns a field as it learns everywhere")
+        return self.in_field
 
     def tasks(self, drive: Drive, seed: int, scenario: Scenario | None = None) -> Tasks:
         """Return what it learns on."""
@@ -141,6 +173,7 @@ register_recipe(
         ),
         counts=ALL_COUNTS,
         cellular=True,
+        in_field=FieldLearning(learn_field, field_setup, RUNS, ("rate", "trace")),
     )
 )
 
@@ -218,15 +251,29 @@ def learn(
     return policy, curve
 
 
-def refuse_unfit(recipe: Recipe, options: LearningOptions) -> None:
+def refuse_unfit(recipe: Recipe, options: LearningOptions, *, in_field: bool = False) -> None:
     """Make sure that what a planner learns with takes what is asked for.
+
+    Args:
+        recipe: How the planner learns.
+        options: What is asked for.
+        in_field: Whether it is to learn a single field in its own way.
 
     Raises:
         UserError: If it does not; names the option.
     """
-    takes = {*signature(recipe.learner).parameters, *signature(recipe.problem).parameters}
+    if in_field and recipe.in_field is not None:
+        takes = recipe.in_field.takes
+        for name in options.given():
+            if name not in takes:
+                raise UserError(
+                    f"--{name}: {recipe.planner} learns the field of a scenario without; it takes "
+                    f"{' and '.join(f'--{one}' for one in takes)}"
+                )
+        return
+    known = {*signature(recipe.learner).parameters, *signature(recipe.problem).parameters}
     for name in ("discount", "reward"):
-        if getattr(options, name) is not None and name not in takes:
+        if getattr(options, name) is not None and name not in known:
             raise UserError(f"--{name}: what {recipe.planner} learns with takes none")
     if options.trace is not None and type(recipe.learner()) is QLearning:
         raise UserError(f"--trace: what {recipe.planner} learns with has no traces")

@@ -14,12 +14,14 @@ from typing import Any, get_args
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import writable_files
+from fuzzyq_bullet.ground_truth import shortest_path
 from fuzzyq_bullet.learning.checkpoint import WINDOW, Checkpoint, Curve, success
 from fuzzyq_bullet.learning.policy import MAX_WORDS, load_policy
 from fuzzyq_bullet.learning.training import MAX_EPISODES
 from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import load_scenario, realise
 from fuzzyq_bullet.scenario.models import Drive
+from fuzzyq_bullet.training.field import FieldTask
 from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
 from fuzzyq_bullet.training.registry import RECIPES, learn, recipe_of, refuse_unfit
 from fuzzyq_bullet.training.tasks import MOST_SEED, Tasks
@@ -27,6 +29,8 @@ from fuzzyq_bullet.version import __version__
 from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
 
 FOLDER = Path("out/train")
+USUAL_EPISODES = 200
+"""Episodes of a training, unless more or fewer are asked for, as in the paper."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +48,7 @@ class TrainingConfig:
     """
 
     planner: str
-    episodes: int = 200
+    episodes: int = USUAL_EPISODES
     drive: Drive = "kinematic"
     seed: int = 0
     scenario: str | None = None
@@ -157,14 +161,23 @@ class TrainingProgress:
 
 def config_for(
     planner: str,
-    episodes: int,
-    drive: str,
+    episodes: int | None,
+    drive: str | None,
     seed: int,
     scenario: str | None,
     options: LearningOptions = AS_USUAL,
     plugins: Sequence[str] = (),
 ) -> TrainingConfig:
     """Return what is asked for by the options of a command.
+
+    Args:
+        planner: Who learns.
+        episodes: Of the training; None for as many as it usually takes.
+        drive: What moves the robot; None for kinematic, or to learn a field that of the scenario.
+        seed: Of the training.
+        scenario: What it learns on; None for random fields.
+        options: How.
+        plugins: Modules of the user's own that it needs.
 
     Raises:
         UserError: If any of it is not allowed; names the option.
@@ -174,11 +187,19 @@ def config_for(
         what = f"{planner} does not learn" if known else f"no planner {shorten(planner)}"
         hint = "" if known else did_you_mean(planner, RECIPES)
         raise UserError(f"PLANNER: {what}; {hint}those that learn: {', '.join(RECIPES)}")
+    recipe = RECIPES[planner]
+    own_way = scenario is not None and recipe.in_field is not None
+    if episodes is None:
+        episodes = recipe.of_field.runs if own_way else USUAL_EPISODES
+    if drive is None:
+        drive = (
+            load_scenario(scenario, policies=False).drive if own_way and scenario else "kinematic"
+        )
     if not 1 <= episodes <= MAX_EPISODES:
         raise UserError(f"--episodes: must be from 1 to {MAX_EPISODES}, got {episodes}")
     if not 0 <= seed <= MOST_SEED:
         raise UserError(f"--seed: must be from 0 to {MOST_SEED}, got {seed}")
-    refuse_unfit(RECIPES[planner], options)
+    refuse_unfit(recipe, options, in_field=own_way)
     drives: tuple[Drive, ...] = get_args(Drive)
     for known_drive in drives:
         if drive == known_drive:
@@ -196,7 +217,7 @@ def config_for(
     return config
 
 
-def tasks_for(config: TrainingConfig) -> Tasks:
+def tasks_for(config: TrainingConfig) -> Tasks | FieldTask:
     """Return what is learned on.
 
     Raises:
@@ -209,12 +230,19 @@ def tasks_for(config: TrainingConfig) -> Tasks:
     # The planner that learns takes the place of the scenario's own, of which nothing is used.
     settings = settings_for(config.planner).model_validate({"name": config.planner})
     asked = asked.model_copy(update={"planner": settings})
-    realise(asked)  # now rather than in an episode, should its obstacles find no place
+    realised = realise(asked)  # now rather than in an episode, should obstacles find no place
+    if recipe.in_field is not None:
+        return FieldTask(realised.model_copy(update={"drive": config.drive}))
     return recipe.tasks(config.drive, config.seed, asked)
 
 
 def episodes_done(
-    config: TrainingConfig, tasks: Tasks, files: TrainingFiles, *, resume: bool, anew: bool
+    config: TrainingConfig,
+    tasks: Tasks | FieldTask,
+    files: TrainingFiles,
+    *,
+    resume: bool,
+    anew: bool,
 ) -> int:
     """Return how many episodes of the training that is to go on are done already.
 
@@ -250,7 +278,7 @@ def episodes_done(
     return 0
 
 
-def _is_same(config: TrainingConfig, tasks: Tasks, files: TrainingFiles) -> bool:
+def _is_same(config: TrainingConfig, tasks: Tasks | FieldTask, files: TrainingFiles) -> bool:
     """Return whether the policy that is there was made by the very same training."""
     try:
         policy = load_policy(files.policy)
@@ -270,33 +298,55 @@ def episodes_kept(checkpoint: Path) -> int:
 
 def learn_policy(
     config: TrainingConfig,
-    tasks: Tasks,
+    tasks: Tasks | FieldTask,
     files: TrainingFiles,
     on_episode: Callable[[Curve], None],
     *,
     resume: bool,
 ) -> Curve:
     """Train, write the policy, and return the learning curve."""
-    recipe = recipe_of(config.planner)
-    policy, curve = learn(
-        recipe,
-        tasks,
-        config.options.setup(recipe.setup(config.episodes, config.seed)),
-        options=config.options,
-        command=config.command,
-        checkpoint=files.checkpoint,
-        resume=resume,
-        on_episode=on_episode,
-    )
+    recipe, options = recipe_of(config.planner), config.options
+    if isinstance(tasks, FieldTask):
+        policy, curve = recipe.of_field.learn(
+            tasks,
+            options.setup(recipe.of_field.setup(config.episodes, config.seed)),
+            command=config.command,
+            checkpoint=files.checkpoint,
+            resume=resume,
+            on_episode=on_episode,
+        )
+    else:
+        policy, curve = learn(
+            recipe,
+            tasks,
+            options.setup(recipe.setup(config.episodes, config.seed)),
+            options=options,
+            command=config.command,
+            checkpoint=files.checkpoint,
+            resume=resume,
+            on_episode=on_episode,
+        )
     policy.save(files.policy)
     return curve
 
 
-def title_of(config: TrainingConfig, tasks: Tasks) -> str:
+def title_of(config: TrainingConfig, tasks: Tasks | FieldTask) -> str:
     """Return the heading of the learning curve."""
     # A scenario's name is of plain letters; its path may hold what no font can show.
     where = "random fields" if tasks.scenario is None else tasks.scenario.name
     return f"{config.planner}: learned on {where} ({config.drive}, seed {config.seed})"
+
+
+def most_of(tasks: Tasks | FieldTask) -> float | None:
+    """Return what an episode can earn at most (s): minus the time of the shortest path.
+
+    None where every episode is another, where there is no path, and of a point that jumps, which
+    has no greatest speed.
+    """
+    if not isinstance(tasks, FieldTask) or tasks.scenario.drive == "kinematic":
+        return None
+    route = shortest_path(tasks.scenario)
+    return None if route is None else -route.length / tasks.scenario.robot.max_speed
 
 
 def summary_of(
@@ -304,6 +354,12 @@ def summary_of(
 ) -> dict[str, Any]:
     """Return what became of a training, for people and as JSON."""
     window = min(WINDOW, len(curve))
+    parameters = load_policy(files.policy).parameters
+    of_field: dict[str, Any] = {
+        key: parameters[key] for key in ("first_s", "fastest_s", "fastest_run") if key in parameters
+    }
+    if of_field:
+        of_field["collisions"] = int((curve["outcome"] == b"collision").sum())
     return {
         "planner": config.planner,
         "command": config.command,
@@ -316,6 +372,7 @@ def summary_of(
         "window": window,
         "success_first": success(curve[:window]),
         "success_last": success(curve[-window:]),
+        **of_field,
         "policy": str(files.policy),
         "picture": str(files.picture),
         "checkpoint": str(files.checkpoint),

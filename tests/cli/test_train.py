@@ -31,7 +31,7 @@ from fuzzyq_bullet.training.registry import RECIPES
 from fuzzyq_bullet.training.session import SHIPPED, TrainingConfig, TrainingProgress
 from tests.helpers.commands import FUZZYQ, Call
 
-PLANNER = "fuzzy-q-lambda"
+PLANNER = "q-lambda"
 EPISODES = 12
 ASKED = ("train", PLANNER, "--scenario", "open-field", "--episodes", str(EPISODES), "--seed", "5")
 
@@ -252,7 +252,7 @@ start: {position: [1, 1]}
 goal: {position: [9, 9]}
 drive: kinematic
 planner:
-  name: fuzzy-q-lambda
+  name: q-lambda
   policy: POLICY
 """
 
@@ -303,7 +303,7 @@ def unfit(whole: Files, tmp_path: Path) -> dict[str, str]:
         "deep": (b"[" * 100_000, "is nested too deeply"),
         "foreign": (
             json.dumps({**data, "planner": "q-learning"}).encode(),
-            "is a policy of the planner 'q-learning'; one of 'fuzzy-q-lambda' is needed",
+            "is a policy of the planner 'q-learning'; one of 'q-lambda' is needed",
         ),
         "renamed": (
             json.dumps({**data, "actions": [f"a{i}" for i in range(24)]}).encode(),
@@ -314,7 +314,7 @@ def unfit(whole: Files, tmp_path: Path) -> dict[str, str]:
         (tmp_path / name).write_bytes(content)
     return {
         **{name: words for name, (_, words) in contents.items()},
-        "nowhere": "No such file or directory; make one with fuzzyq train fuzzy-q-lambda",
+        "nowhere": "No such file or directory; make one with fuzzyq train q-lambda",
         ".": "is not a file; give",
     }
 
@@ -340,7 +340,7 @@ def test_who_learns_needs_no_policy_to_begin_with(
     path = scenario_in(tmp_path, "nowhere.json").rename(tmp_path / "$x^ \N{SNOWMAN}\udcff.yaml")
     monkeypatch.chdir(tmp_path)
     call("train", PLANNER, "--scenario", path.name, "--episodes", "1")
-    policy = load_policy(tmp_path / "out/train/fuzzy-q-lambda.json")
+    policy = load_policy(tmp_path / f"out/train/{PLANNER}.json")
     assert str(tmp_path) not in policy.dumps()
     # Nor does it matter in which folder its file would have been.
     before = load_policy(whole.policy)

@@ -31,6 +31,11 @@ def row(gap):
     return [*half, *((x, -y, r) for x, y, r in half)]
 
 
+def towards(goal):
+    """Return an observation of which the goal is all that counts."""
+    return observe(Field(), (0.0, 0.0), goal=goal)
+
+
 def seen_from(field, here):
     """Return a place with its scan, and the frontiers of that."""
     scan = scan_360(observe(field, here))
@@ -109,7 +114,7 @@ def explore(field, start, goal, most=1000):
         assert min((math.dist(here, one) for one in looks), default=1.0) > NEAR
         graph.scan(observe(field, here, goal=goal))
         looks.append(here)
-        found = graph.best_frontier(goal)
+        found = graph.best_frontier(towards(goal))
         if found is None:
             return False, looks
         chosen, path = found
@@ -180,7 +185,7 @@ def test_in_a_closed_cell_it_ends_when_all_was_looked_at(side):
 def offered(graph, goal=(100.0, 0.0)):
     """Take all frontiers out of a memory, best first."""
     frontiers = []
-    while (found := graph.best_frontier(goal)) is not None:
+    while (found := graph.best_frontier(towards(goal))) is not None:
         frontiers.append(found[0])
         graph.blacklist(found[0])
         assert len(frontiers) < 500
@@ -234,7 +239,7 @@ def test_the_way_to_an_exit_leads_back_along_what_was_driven_and_cuts_corners_it
         graph.pass_by(here)
     graph.scan(observe(field, driven[-1]))
     for one in range(30):
-        found = graph.best_frontier((0.0, -50.0))
+        found = graph.best_frontier(towards((0.0, -50.0)))
         assert found is not None, one
         chosen, path = found
         if chosen.point[0] < 0.3 and chosen.point[1] < 0.3:
@@ -252,7 +257,7 @@ def test_the_way_to_an_exit_leads_back_along_what_was_driven_and_cuts_corners_it
 def test_the_exit_with_the_least_way_to_the_goal_comes_first():
     # The wall ends 0.4 m to the left, and far to the right; the goal is behind it.
     field = Field(boxes=np.array([[0.6, -2.0, 0.2, 4.8, 0.0]]))
-    chosen, _ = looked(field, (0.0, 0.0)).best_frontier((3.0, 0.0))
+    chosen, _ = looked(field, (0.0, 0.0)).best_frontier(towards((3.0, 0.0)))
     assert chosen.point[1] > 0.4
     assert chosen.point[0] > 0.2
 
@@ -263,7 +268,7 @@ def test_a_gap_it_has_seen_right_through_comes_before_the_way_around(side):
     # far aside that the straight line to it crosses what is beside the gap.
     field = Field(np.array(row(2.0 * WIDE + 0.008)))
     around = [(-0.3, 0.6 * k) for k in range(-6, 7) if k]
-    chosen, _ = looked(field, *around, (-0.3, 0.0)).best_frontier((1.4, 2.0 * side))
+    chosen, _ = looked(field, *around, (-0.3, 0.0)).best_frontier(towards((1.4, 2.0 * side)))
     assert abs(chosen.heading) < 0.02
     assert chosen.point[0] > 0.4
 
@@ -280,7 +285,9 @@ def test_along_a_wall_that_was_seen_whole_an_end_comes_before_all_that_leads_awa
     # The wall reaches from x = −3 to 3. Straight to the goal, what lies below is less far.
     field = Field(boxes=np.array([[0.0, 1.0, 6.0, 0.2, 0.0]]))
     there = [(round(0.6 * k, 1), 0.5) for k in range(-5, 6)]
-    chosen, path = looked(field, *there, (2.1, 0.45), (0.9, 0.45)).best_frontier((0.0, 3.0))
+    chosen, path = looked(field, *there, (2.1, 0.45), (0.9, 0.45)).best_frontier(
+        towards((0.0, 3.0))
+    )
     assert chosen.point[0] > 2.7
     assert all(free(field, a, b, BODY) for a, b in pairwise(path))
 
@@ -296,7 +303,7 @@ def test_two_places_near_each_other_with_a_wall_between_are_not_joined():
         if here in (up[0], down[-1]):
             graph.scan(observe(field, here))
     count = 0
-    while (found := graph.best_frontier((-5.0, 0.0))) is not None and count < 60:
+    while (found := graph.best_frontier(towards((-5.0, 0.0)))) is not None and count < 60:
         assert all(free(field, a, b, BODY) for a, b in pairwise(found[1]))
         graph.blacklist(found[0])
         count += found[0].point[0] < 0.3
@@ -305,7 +312,7 @@ def test_two_places_near_each_other_with_a_wall_between_are_not_joined():
 
 def test_of_two_exits_as_far_from_the_goal_the_nearer_one_comes_first():
     for goal in ((1.5, 10.0), (1.2, 10.0)):
-        chosen, _ = looked(Field(), (0.0, 0.0), (3.0, 0.0)).best_frontier(goal)
+        chosen, _ = looked(Field(), (0.0, 0.0), (3.0, 0.0)).best_frontier(towards(goal))
         assert chosen.point[0] > 2.0
 
 
@@ -314,10 +321,10 @@ def test_an_open_way_comes_before_a_gap_that_is_a_little_nearer():
     wall = [(0.6, -0.415 - 0.4 * k, 0.2) for k in range(8)]
     field = Field(np.array([(0.6, 0.415, 0.2), *wall]))
     assert any(one.beyond is None for one in seen_from(field, (0.0, 0.0))[1])
-    chosen, _ = looked(field, (0.0, 0.0)).best_frontier((5.0, 2.0))
+    chosen, _ = looked(field, (0.0, 0.0)).best_frontier(towards((5.0, 2.0)))
     assert chosen.beyond is not None
     # What is nearer by more than the doubt is worth comes first all the same.
-    nearer, _ = looked(Field(np.array(row(0.43))), (0.0, 0.0)).best_frontier((5.0, 0.0))
+    nearer, _ = looked(Field(np.array(row(0.43))), (0.0, 0.0)).best_frontier(towards((5.0, 0.0)))
     assert nearer.beyond is None
 
 
@@ -341,13 +348,13 @@ def test_when_all_else_was_tried_what_seems_a_corner_is_tried_too_also_in_later_
 
 def test_in_a_world_of_nothing_its_first_exit_points_at_the_goal():
     for goal in ((9.0, 0.0), (0.0, 9.0), (-6.0, -6.0)):
-        chosen, path = looked(Field(), (0.0, 0.0)).best_frontier(goal)
+        chosen, path = looked(Field(), (0.0, 0.0)).best_frontier(towards(goal))
         assert math.cos(chosen.heading - math.atan2(goal[1], goal[0])) > math.cos(0.14)
         assert path == [(0.0, 0.0), chosen.point]
 
 
 def test_a_goal_under_the_robot_is_no_mistake():
-    chosen, _ = looked(Field(arena=(4.0, 4.0)), (2.0, 2.0)).best_frontier((2.0, 2.0))
+    chosen, _ = looked(Field(arena=(4.0, 4.0)), (2.0, 2.0)).best_frontier(towards((2.0, 2.0)))
     assert chosen.distance > 0.0
 
 

@@ -15,8 +15,7 @@ from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.fuzzy.paper import NEAR_WORDS
-from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC, weights_of
-from fuzzyq_bullet.planning.policies import policy_of
+from fuzzyq_bullet.planning.fuzzy_q_lambda import rule_policy, weights_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, WeightsSettings
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import is_asked
@@ -129,7 +128,7 @@ def rule_weights(trajectory: Trajectory) -> Floats:
     if not isinstance(planner, FuzzyQLambdaSettings):
         return unknown
     try:
-        weights = weights_of(policy_of(planner, POLICY_SPEC))
+        weights = weights_of(rule_policy(planner))
     except UserError:
         return unknown
     fired = decisions.rules.reshape(-1, count)

@@ -1,0 +1,1 @@
+"""What crossing the same field again is worth: ``fuzzyq bench familiar``."""
