@@ -63,7 +63,7 @@ format: $(READY)
 # The commands are the package's to say; each policy then takes the place of the one before. A change
 # in it shows in git. Trained anew each time: a checkpoint knows the version, and not the code.
 policies: $(READY)
-	@set -e; commands=$$($(BIN)/python -m fuzzyq_bullet.training.session); \
+	@set -e; commands=$$($(BIN)/python -m fuzzyq_bullet.training.config); \
 	mkdir -p "$(POLICIES)"; \
 	printf '%s\n' "$$commands" | while read -r _ _ planner options; do \
 		made="$(OUT)/policies/$$planner.json"; \

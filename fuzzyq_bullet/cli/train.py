@@ -17,8 +17,9 @@ HOW: dict[str, Any] = {"rich_help_panel": "Changes to how it learns"}
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.learning.checkpoint import Curve
+    from fuzzyq_bullet.training.config import TrainingConfig
     from fuzzyq_bullet.training.field import FieldTask
-    from fuzzyq_bullet.training.session import TrainingConfig, TrainingFiles, TrainingProgress
+    from fuzzyq_bullet.training.session import TrainingFiles, TrainingProgress
     from fuzzyq_bullet.training.tasks import Tasks
 
 
@@ -104,15 +105,14 @@ def train(
         raise UserError("--resume, --anew: give one of them; the first goes on, the other does not")
     from fuzzyq_bullet.files import alone_at, refuse_inputs
     from fuzzyq_bullet.outputs import plugin_inputs
+    from fuzzyq_bullet.training.config import config_for, tasks_for
     from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions, read_options
     from fuzzyq_bullet.training.session import (
         TrainingFiles,
         TrainingProgress,
-        config_for,
         episodes_done,
         episodes_kept,
         summary_of,
-        tasks_for,
     )
 
     given = {

@@ -23,6 +23,7 @@ GREEN = "#009E73"
 ORANGE = "#E69F00"
 RED = "#D55E00"
 PURPLE = "#A0478A"
+BROWN = "#7A4B10"
 
 
 def new_figure(width: float, height: float, *, dpi: int = 120) -> Figure:

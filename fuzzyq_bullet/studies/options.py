@@ -31,6 +31,13 @@ GUARDED = {
     "q-lambda-guarded": QLambdaSettings(guard=True, breakout=True),
 }
 """The direct planners with the safety filter and the ways out of the improved ones."""
+POSITIONAL = {
+    "q-learning-position": QLearningSettings(),
+    "q-lambda-position": QLambdaSettings(),
+}
+"""The direct planners with a table of places, learned in each environment before it is driven."""
+VARIANTS: Mapping[str, PlannerSettings] = {**GUARDED, **POSITIONAL}
+"""What studies know beside the planners themselves."""
 _EXPECTED = {**q_learning.POLICY_SPECS, "fuzzy-q-lambda": fuzzy_q_lambda.POLICY_SPEC}
 
 
@@ -122,7 +129,7 @@ def planners_of(names: str | Iterable[str]) -> dict[str, PlannerSettings]:
     """Return planners as they are set by default, each once, by their names.
 
     Args:
-        names: Such as ``fuzzy,q-learning``; those of ``GUARDED`` are known too.
+        names: Such as ``fuzzy,q-learning``; those of ``VARIANTS`` are known too.
 
     Raises:
         UserError: If there is no such planner.
@@ -130,9 +137,9 @@ def planners_of(names: str | Iterable[str]) -> dict[str, PlannerSettings]:
     chosen: dict[str, PlannerSettings] = {}
     for part in names.split(",") if isinstance(names, str) else names:
         name = part.strip()
-        if name not in planner_names() and name not in GUARDED:
+        if name not in planner_names() and name not in VARIANTS:
             raise UserError(f"--planners: {no_planner(name)}")
-        usual = GUARDED.get(name)
+        usual = VARIANTS.get(name)
         chosen[name] = usual or settings_for(name).model_validate({"name": name})
     return chosen
 
@@ -149,7 +156,7 @@ def described(planners: Mapping[str, PlannerSettings]) -> dict[str, Any]:
     Raises:
         UserError: If a policy is missing or damaged.
     """
-    return {label: _described(settings) for label, settings in planners.items()}
+    return {label: _described(label, settings) for label, settings in planners.items()}
 
 
 def in_order(names: Sequence[str]) -> tuple[str, ...]:
@@ -163,8 +170,10 @@ def hash_of(policy: Policy) -> str:
     return hashlib.sha256(policy.dumps().encode()).hexdigest()[:32]
 
 
-def _described(settings: PlannerSettings) -> dict[str, Any]:
+def _described(label: str, settings: PlannerSettings) -> dict[str, Any]:
     told = settings.model_dump(mode="json")
+    if label in POSITIONAL:
+        return told  # it learns what it needs by itself
     if isinstance(settings, PolicySettings) and settings.name in _EXPECTED:
         told["policy"] = hash_of(policy_of(settings, _EXPECTED[settings.name]))
     return told

@@ -131,7 +131,7 @@ def register_recipe(recipe: Recipe) -> None:
             )
         )
 
-    What the package is to ship is one more line in ``training.session.SHIPPED``.
+    What the package is to ship is one more line in ``training.config.SHIPPED``.
 
     Raises:
         ValueError: If it is known already how that planner learns.

@@ -27,8 +27,9 @@ from fuzzyq_bullet.learning.checkpoint import ROW, Checkpoint, Curve, last_mean
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.platforms import asset
 from fuzzyq_bullet.scenario import dump_scenario, parse_scenario
+from fuzzyq_bullet.training.config import SHIPPED, TrainingConfig
 from fuzzyq_bullet.training.registry import RECIPES
-from fuzzyq_bullet.training.session import SHIPPED, TrainingConfig, TrainingProgress
+from fuzzyq_bullet.training.session import TrainingProgress
 from tests.helpers.commands import FUZZYQ, Call
 
 PLANNER = "q-lambda"
@@ -450,7 +451,7 @@ def test_every_shipped_policy_has_a_command_and_every_command_a_planner_that_lea
 
 
 def test_make_reads_the_commands_from_where_they_are(capsys: pytest.CaptureFixture[str]) -> None:
-    runpy.run_path(sys.modules["fuzzyq_bullet.training.session"].__file__ or "", None, "__main__")
+    runpy.run_path(sys.modules["fuzzyq_bullet.training.config"].__file__ or "", None, "__main__")
     assert capsys.readouterr().out.splitlines() == [config.command for config in SHIPPED.values()]
 
 

@@ -10,7 +10,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.policies import SHIPPED, policy_of, shipped
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS
 from fuzzyq_bullet.planning.settings import PolicySettings
-from fuzzyq_bullet.training.session import SHIPPED as TRAININGS
+from fuzzyq_bullet.training.config import SHIPPED as TRAININGS
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -186,6 +186,7 @@ def test_a_failure_has_no_steps_or_m_s_of_them_and_the_table_tells_which() -> No
     assert summary.common == 3  # of the planners with ways out: fuzzy does not shrink it
     assert [line.role for line in summary.lines[5:]] == [
         *("q-learning with ways out", "q-lambda with ways out"),
+        *("q-learning, by place", "q-lambda, by place"),
         *("fixed 1/1", "best pair 1.5/0.5"),
     ]
     assert all(line.paper is None for line in summary.lines[5:])
@@ -211,9 +212,9 @@ def test_orders_of_steps_are_compared_where_both_arrived() -> None:
 
 def test_if_one_and_one_is_the_best_pair_it_is_one_row() -> None:
     best = Weights(1.0, 1.0, 1.0)
-    assert len(contenders(best)) == 8
-    assert list(roles(best).values())[2:] == ["fixed 1/1, the best pair"]
-    assert len(contenders(PAIR)) == 9
+    assert len(contenders(best)) == 10
+    assert list(roles(best).values())[4:] == ["fixed 1/1, the best pair"]
+    assert len(contenders(PAIR)) == 11
 
 
 # As people call it
@@ -241,7 +242,7 @@ def test_the_command_writes_rows_summary_and_picture(fuzzyq: Call, tmp_path: Pat
     assert (tmp_path / "success.png").stat().st_size > 10_000
 
 
-def test_the_steps_of_all_nine_are_in_the_table_beside_the_papers(
+def test_the_steps_of_all_are_in_the_table_beside_the_papers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     given = ("--pair", "2,0.5", "--runs", "1", "--count", "5", "--json", "--out", str(tmp_path))
@@ -253,11 +254,12 @@ def test_the_steps_of_all_nine_are_in_the_table_beside_the_papers(
     assert [(line["role"], line["paper"]) for line in told["lines"]] == [
         *((name, PAPER_STEPS[name]) for name in PAPER),
         *(("q-learning with ways out", None), ("q-lambda with ways out", None)),
+        *(("q-learning, by place", None), ("q-lambda, by place", None)),
         *(("fixed 1/1", None), ("best pair 2/0.5", None)),
     ]
     assert told["settings"]["search"] is None
     with (tmp_path / "table" / "steps.csv").open() as file:
-        assert len(list(csv.DictReader(file))) == 9
+        assert len(list(csv.DictReader(file))) == 11
 
 
 MISTAKES = {

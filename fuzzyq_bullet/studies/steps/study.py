@@ -20,6 +20,8 @@ from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.studies.options import (
     GUARDED,
     PAPER,
+    POSITIONAL,
+    VARIANTS,
     described,
     one_drive_of,
     planner_of,
@@ -40,7 +42,7 @@ from fuzzyq_bullet.studies.selection import (
     words_of,
 )
 from fuzzyq_bullet.studies.steps.table import Summary, summary_of
-from fuzzyq_bullet.studies.study import Findings, Results, Stage, Study, Swept, Table, cell
+from fuzzyq_bullet.studies.study import Findings, Results, Stage, Study, Swept, Table, Work, cell
 
 COUNT = 50
 """Obstacles of Table 5."""
@@ -52,7 +54,8 @@ def contenders(pair: Weights) -> dict[str, PlannerSettings]:
     """Return all planners of the table by what rows call them.
 
     The paper's five as they are set by default (fixed weights are 0.5/0.5); the direct ones with
-    safety filter and ways out, which the improved ones have; then the improved fuzzy planner with
+    safety filter and ways out, which the improved ones have, and with a table of places that they
+    learn in each environment before they drive it; then the improved fuzzy planner with
     weights 1/1, which nobody had to learn, and with the best fixed pair. Without these two, longer
     steps alone would look like something learned.
 
@@ -60,16 +63,17 @@ def contenders(pair: Weights) -> dict[str, PlannerSettings]:
         pair: The best fixed pair.
     """
     fixed = {label_of(one): settings_of(one) for one in (ONE, pair)}
-    return planners_of((*PAPER, *GUARDED)) | fixed
+    return planners_of((*PAPER, *VARIANTS)) | fixed
 
 
 def roles(pair: Weights) -> dict[str, str]:
     """Return what the extra rows are called for a person, by what rows call the planner."""
-    guarded = {name: f"{name.removesuffix('-guarded')} with ways out" for name in GUARDED}
+    variants = {name: f"{name.removesuffix('-guarded')} with ways out" for name in GUARDED}
+    variants |= {name: f"{name.removesuffix('-position')}, by place" for name in POSITIONAL}
     if label_of(pair) == label_of(ONE):
-        return {**guarded, label_of(ONE): "fixed 1/1, the best pair"}
+        return {**variants, label_of(ONE): "fixed 1/1, the best pair"}
     words = f"best pair {pair.step:g}/{pair.turn:g}"
-    return {**guarded, label_of(ONE): "fixed 1/1", label_of(pair): words}
+    return {**variants, label_of(ONE): "fixed 1/1", label_of(pair): words}
 
 
 @register_study
@@ -132,6 +136,12 @@ class Steps(Study):
         if found is not None:
             how = {"grid": found.episodes}
         return cls(runs=plan.runs, count=plan.counts[0], drive=plan.drive, seed=plan.seed, **how)
+
+    def work(self) -> Work:
+        """Return what does a job; some planners learn the environment first."""
+        from fuzzyq_bullet.studies.positional import work_for_row
+
+        return work_for_row
 
     def findings(self, results: Results) -> Findings:
         """Return the table, beside the paper's."""

@@ -13,6 +13,7 @@ from statistics import fmean
 import numpy as np
 
 from fuzzyq_bullet.studies.episodes import Row
+from fuzzyq_bullet.studies.options import POSITIONAL
 from fuzzyq_bullet.studies.statistics import (
     ByPlanner,
     Estimate,
@@ -120,7 +121,7 @@ def summary_of(
     table = by_planner(rows)
     names = [name for name in (*PAPER_STEPS, *roles) if name in table]
     compared = tuple(
-        name for name in names if name not in ("fuzzy", "q-learning", "q-lambda")
+        name for name in names if name not in ("fuzzy", "q-learning", "q-lambda", *POSITIONAL)
     ) or tuple(names)
     common = solved_by_all(table, compared)
     seed = int(rng.integers(2**63))

@@ -15,6 +15,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, PercentFormatter
 
 from fuzzyq_bullet.figures.style import (
     BLUE,
+    BROWN,
     GREEN,
     GREY,
     INK,
@@ -49,6 +50,8 @@ LOOKS = {
     "fuzzy-q-lambda": Look(BLUE, "o", "-"),
     "q-learning-guarded": Look(SKY, "<", (0, (3, 2))),
     "q-lambda-guarded": Look(INK, "p", (0, (1.5, 1.5))),
+    "q-learning-position": Look(GREY, ">", (0, (3, 2))),
+    "q-lambda-position": Look(BROWN, "h", (0, (1.5, 1.5))),
 }
 _OTHERS = (Look(INK, "P", "-"), Look(SKY, "X", "--"), Look(GREY, "*", ":"))
 

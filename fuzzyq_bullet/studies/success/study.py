@@ -21,7 +21,16 @@ from fuzzyq_bullet.studies.options import (
 )
 from fuzzyq_bullet.studies.plan import FieldsPlan, limits_with
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.study import Findings, Picture, Results, Study, Table, cell, numbers
+from fuzzyq_bullet.studies.study import (
+    Findings,
+    Picture,
+    Results,
+    Study,
+    Table,
+    Work,
+    cell,
+    numbers,
+)
 from fuzzyq_bullet.studies.success.table import (
     Line,
     Summary,
@@ -61,7 +70,9 @@ class Success(Study):
     filmed: ClassVar[bool] = True
 
     planners: str = Field(
-        ",".join((*PAPER, *GUARDED)), description="Planners to compare, with commas between."
+        ",".join((*PAPER, *GUARDED)),
+        description="Planners to compare, with commas between; q-learning-position and "
+        "q-lambda-position learn every environment first, in ten seconds and more.",
     )
     counts: str = Field(
         numbers(COUNTS), description="Numbers of scattered obstacles; by default 5, 10, … 125."
@@ -89,6 +100,12 @@ class Success(Study):
             seed=self.seed,
             limits=limits_with(one_drive_of(self.drive)),
         )
+
+    def work(self) -> Work:
+        """Return what does a job; some planners learn the environment first."""
+        from fuzzyq_bullet.studies.positional import work_for_row
+
+        return work_for_row
 
     def findings(self, results: Results) -> Findings:
         """Return success with its intervals, and what the runs that arrived have in common."""

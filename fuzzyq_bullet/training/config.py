@@ -1,0 +1,155 @@
+"""What a user asks to be trained: who learns, for how long, on what, and how.
+
+As a program it prints, for ``make policies``, the commands that make the shipped policies.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import get_args
+
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.learning.policy import MAX_WORDS
+from fuzzyq_bullet.learning.training import MAX_EPISODES
+from fuzzyq_bullet.planning import planner_names, settings_for
+from fuzzyq_bullet.scenario import load_scenario, realise
+from fuzzyq_bullet.scenario.models import Drive
+from fuzzyq_bullet.training.field import FieldTask
+from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
+from fuzzyq_bullet.training.registry import RECIPES, recipe_of, refuse_unfit
+from fuzzyq_bullet.training.tasks import MOST_SEED, Tasks
+from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
+
+USUAL_EPISODES = 200
+"""Episodes of a training, unless more or fewer are asked for, as in the paper."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingConfig:
+    """Everything that the result of a training depends on, except the version.
+
+    Attributes:
+        planner: Name of the planner that learns.
+        episodes: Number of episodes.
+        drive: What moves the robot.
+        seed: Seed of all random numbers.
+        scenario: Path or name of the scenario to learn on; None for random scenarios.
+        options: What it does otherwise than the planner usually learns.
+        plugins: Modules of the user's own that it needs.
+    """
+
+    planner: str
+    episodes: int = USUAL_EPISODES
+    drive: Drive = "kinematic"
+    seed: int = 0
+    scenario: str | None = None
+    options: LearningOptions = AS_USUAL
+    plugins: tuple[str, ...] = ()
+
+    @property
+    def command(self) -> str:
+        """The command that does it, with every option written out.
+
+        The output path is not in it: the same training gives the same file everywhere.
+        """
+        parts = ["fuzzyq", "train", self.planner, "--episodes", str(self.episodes)]
+        parts += ["--drive", self.drive, "--seed", str(self.seed)]
+        if self.scenario is not None:
+            parts += ["--scenario", self.scenario]
+        parts += self.options.words()
+        return shlex.join([*parts, *(word for name in self.plugins for word in ("--plugin", name))])
+
+
+SHIPPED = {
+    config.planner: config
+    for config in (
+        TrainingConfig("q-learning", episodes=200, drive="kinematic", seed=0),
+        TrainingConfig("q-lambda", episodes=200, drive="kinematic", seed=0),
+        TrainingConfig("fuzzy-q-lambda", episodes=480, drive="wheels", seed=1),
+    )
+}
+"""How each policy in ``assets/policies`` is made, by planner."""
+
+
+def config_for(
+    planner: str,
+    episodes: int | None,
+    drive: str | None,
+    seed: int,
+    scenario: str | None,
+    options: LearningOptions = AS_USUAL,
+    plugins: Sequence[str] = (),
+) -> TrainingConfig:
+    """Return what is asked for by the options of a command.
+
+    Args:
+        planner: Who learns.
+        episodes: Of the training; None for as many as it usually takes.
+        drive: What moves the robot; None for kinematic, or to learn a field that of the scenario.
+        seed: Of the training.
+        scenario: What it learns on; None for random fields.
+        options: How.
+        plugins: Modules of the user's own that it needs.
+
+    Raises:
+        UserError: If any of it is not allowed; names the option.
+    """
+    if planner not in RECIPES:
+        known = planner in planner_names()
+        what = f"{planner} does not learn" if known else f"no planner {shorten(planner)}"
+        hint = "" if known else did_you_mean(planner, RECIPES)
+        raise UserError(f"PLANNER: {what}; {hint}those that learn: {', '.join(RECIPES)}")
+    recipe = RECIPES[planner]
+    own_way = scenario is not None and recipe.in_field is not None
+    if episodes is None:
+        episodes = recipe.of_field.runs if own_way else USUAL_EPISODES
+    if drive is None:
+        drive = (
+            load_scenario(scenario, policies=False).drive if own_way and scenario else "kinematic"
+        )
+    if not 1 <= episodes <= MAX_EPISODES:
+        raise UserError(f"--episodes: must be from 1 to {MAX_EPISODES}, got {episodes}")
+    if not 0 <= seed <= MOST_SEED:
+        raise UserError(f"--seed: must be from 0 to {MOST_SEED}, got {seed}")
+    refuse_unfit(recipe, options, in_field=own_way)
+    drives: tuple[Drive, ...] = get_args(Drive)
+    for known_drive in drives:
+        if drive == known_drive:
+            config = TrainingConfig(
+                planner, episodes, known_drive, seed, scenario, options, tuple(plugins)
+            )
+            break
+    else:
+        raise UserError(f"--drive: {not_one_of('drive', drive, sorted(drives))}")
+    if len(config.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
+        raise UserError(
+            "--scenario, --plugin: their paths are too long for the policy to hold: "
+            f"{shorten(config.command)}"
+        )
+    return config
+
+
+def tasks_for(config: TrainingConfig) -> Tasks | FieldTask:
+    """Return what is learned on.
+
+    Raises:
+        UserError: If the scenario is wrong.
+    """
+    recipe = recipe_of(config.planner)
+    if config.scenario is None:
+        return recipe.tasks(config.drive, config.seed)
+    asked = load_scenario(config.scenario, policies=False)
+    # The planner that learns takes the place of the scenario's own, of which nothing is used.
+    settings = settings_for(config.planner).model_validate({"name": config.planner})
+    asked = asked.model_copy(update={"planner": settings})
+    realised = realise(asked)  # now rather than in an episode, should obstacles find no place
+    if recipe.in_field is not None:
+        return FieldTask(realised.model_copy(update={"drive": config.drive}))
+    return recipe.tasks(config.drive, config.seed, asked)
+
+
+if __name__ == "__main__":
+    for shipped in SHIPPED.values():
+        print(shipped.command)
