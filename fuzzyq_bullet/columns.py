@@ -117,12 +117,13 @@ def check_arrays(group: str, columns: Columns, arrays: Mapping[str, Any]) -> dic
     return found
 
 
-def csv_of(columns: Columns, arrays: Mapping[str, NDArray[Any]]) -> str:
+def csv_of(columns: Columns, arrays: Mapping[str, NDArray[Any]], *, units: bool = False) -> str:
     """Return a table as CSV: a heading, then a line for every row of the arrays.
 
     Args:
         columns: What the table consists of.
         arrays: An array for each column, all of one length.
+        units: Whether the heading has the unit of each column, as in ``speed [m/s]``.
 
     Returns:
         The text. Numbers read back as the very same, words stand for themselves, and what is
@@ -130,7 +131,11 @@ def csv_of(columns: Columns, arrays: Mapping[str, NDArray[Any]]) -> str:
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([name for key, column in columns.items() for name in column.names(key)])
+    writer.writerow(
+        f"{name} [{column.unit}]" if units and column.unit else name
+        for key, column in columns.items()
+        for name in column.names(key)
+    )
     cells: list[list[Any]] = []
     for key, column in columns.items():
         for values in arrays[key].reshape(len(arrays[key]), -1).T.tolist():

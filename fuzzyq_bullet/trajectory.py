@@ -181,10 +181,15 @@ class Trajectory:
             version=__version__,
         )
 
-    def csv(self, group: Literal["ticks", "decisions"]) -> str:
-        """Return the ticks or the decisions as CSV; docs/record.md describes the columns."""
+    def csv(self, group: Literal["ticks", "decisions"], *, units: bool = False) -> str:
+        """Return the ticks or the decisions as CSV; docs/record.md describes the columns.
+
+        Args:
+            group: Which of the two.
+            units: Whether the heading has the unit of each column, as in ``speed [m/s]``.
+        """
         columns = TICKS if group == "ticks" else DECISIONS
-        return csv_of(columns, vars(getattr(self, group)))
+        return csv_of(columns, vars(getattr(self, group)), units=units)
 
     def __repr__(self) -> str:
         scenario, ticks = self.scenario, self.ticks

@@ -12,6 +12,7 @@ from fuzzyq_bullet.cli import (
     bench,
     check,
     explain,
+    export,
     report,
     run,
     scenarios,
@@ -39,6 +40,7 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 
 _add("run", run.run)
 _add("replay", run.replay)
+_add("export", export.export)
 _add("check", check.check)
 _add("import", scenarios.import_map)
 _add("validate", scenarios.validate)

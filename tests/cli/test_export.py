@@ -1,0 +1,62 @@
+"""``fuzzyq export``: a record as tables that any spreadsheet reads."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fuzzyq_bullet import Trajectory, load_scenario, run, with_options
+from fuzzyq_bullet.trajectory import DECISIONS, TICKS
+from tests.helpers.commands import Call
+
+
+@pytest.fixture(scope="module")
+def record(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("record") / "sparse.npz"
+    run(with_options(load_scenario("sparse"), drive="kinematic")).save(path)
+    return path
+
+
+def test_both_tables_read_back_with_their_units(record: Path, inside: Call, tmp_path: Path) -> None:
+    done = inside("export", record, "--csv", "--out", "tables", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    paths = [Path(line) for line in done.stdout.splitlines()]
+    assert [path.name for path in paths] == ["sparse-ticks.csv", "sparse-decisions.csv"]
+    trajectory = Trajectory.load(record)
+    ticks, decisions = (
+        list(csv.reader((tmp_path / path).read_text().splitlines())) for path in paths
+    )
+    assert ticks[0][:5] == ["time [s]", "position_x [m]", "position_y [m]", "heading [rad]",
+                            "speed [m/s]"]  # fmt: skip
+    assert [float(row[4]) for row in ticks[1:]] == trajectory.ticks.speed.tolist()
+    for table, columns in ((ticks, TICKS), (decisions, DECISIONS)):
+        named = [(name, one.unit) for key, one in columns.items() for name in one.names(key)]
+        assert table[0] == [f"{name} [{unit}]" if unit else name for name, unit in named]
+    mode = [row[decisions[0].index("mode")] for row in decisions[1:]]
+    assert set(mode) <= {"routine", "breakout", "following"}
+    assert len(mode) == np.size(trajectory.decisions.heading)
+
+
+def test_without_out_the_tables_lie_beside_the_record(record: Path, inside: Call) -> None:
+    assert inside("export", record, "--csv").returncode == 0
+    assert record.with_name("sparse-ticks.csv").exists()
+
+
+def test_a_mistake_is_one_line(record: Path, fuzzyq: Call, tmp_path: Path) -> None:
+    done = fuzzyq("export", record)
+    assert (done.returncode, done.stderr) == (
+        2,
+        "error: nothing to export: --csv says in which form\n",
+    )
+    mine = tmp_path / "sparse-ticks.csv"
+    mine.write_text("my own")
+    done = fuzzyq("export", record, "--csv", "--out", tmp_path)
+    assert done.returncode == 2
+    assert "is there already" in done.stderr
+    assert mine.read_text() == "my own"
+    assert fuzzyq("export", record, "--csv", "--out", tmp_path, "--replace").returncode == 0
+    done = fuzzyq("export", tmp_path / "none.npz", "--csv")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
