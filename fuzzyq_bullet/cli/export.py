@@ -30,8 +30,7 @@ def export(
 ) -> None:
     """Write a record as CSV: what the robot did at every tick, and every decision.
 
-    The unit of a column stands in its heading, as in "speed [m/s]". What the columns mean:
-    docs/record.md.
+    The unit of a column stands in brackets in its heading. What the columns mean: docs/record.md.
 
     Raises:
         UserError: If no form is asked for, the record cannot be read, or a file cannot be written.
