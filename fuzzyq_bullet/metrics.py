@@ -100,7 +100,7 @@ def result_of(trajectory: Trajectory) -> Result:
     clearance = float(ticks.clearance.min())
     counts = np.bincount(trajectory.decisions.mode, minlength=len(MODES))
     driven = float(np.hypot(*moves.T).sum())
-    shortest = _shortest(scenario)
+    shortest = shortest_length(scenario)
     turned, jerk = share_turned(trajectory), _mean_jerk(trajectory)
     weighted = None if shortest is None else spl(trajectory.outcome == "goal", shortest, driven)
     return Result(
@@ -190,8 +190,12 @@ def _is_crowded(scenario: Scenario) -> bool:
     return len(Field.of(scenario.obstacles).discs) > MOST_ROUND
 
 
-def _shortest(scenario: Scenario) -> float | None:
-    """Return the length of the shortest path (m); None if there is none, or too much in the way."""
+def shortest_length(scenario: Scenario) -> float | None:
+    """Return the length of the shortest path (m); None if there is none, or too much in the way.
+
+    Args:
+        scenario: A realised scenario.
+    """
     if _is_crowded(scenario):
         return None
     route = shortest_path(scenario)

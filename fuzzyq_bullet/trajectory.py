@@ -182,12 +182,7 @@ class Trajectory:
         )
 
     def csv(self, group: Literal["ticks", "decisions"], *, units: bool = False) -> str:
-        """Return the ticks or the decisions as CSV; docs/record.md describes the columns.
-
-        Args:
-            group: Which of the two.
-            units: Whether the heading has the unit of each column, as in ``speed [m/s]``.
-        """
+        """Return the ticks or the decisions as CSV (docs/record.md); see ``columns.csv_of``."""
         columns = TICKS if group == "ticks" else DECISIONS
         return csv_of(columns, vars(getattr(self, group)), units=units)
 

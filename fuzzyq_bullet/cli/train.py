@@ -43,7 +43,7 @@ def train(
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Seed of the training.", show_default="0")
+        int | None, typer.Option(help="Seed of the training.", show_default="0; that of the field")
     ] = None,
     rate: Annotated[
         str | None,
@@ -78,7 +78,9 @@ def train(
     out: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE", help="Policy to write.", show_default="out/train/PLANNER.json"
+            metavar="FILE",
+            help="Policy to write.",
+            show_default="out/train/PLANNER.json; with the name of the field behind it",
         ),
     ] = None,
     resume: Annotated[
@@ -112,6 +114,7 @@ def train(
         TrainingProgress,
         episodes_done,
         episodes_kept,
+        name_of,
         summary_of,
     )
 
@@ -131,7 +134,7 @@ def train(
             planner,
             plain.get("episodes"),
             plain.get("drive"),
-            plain.get("seed", 0),
+            plain.get("seed"),
             scenario,
             asked.changed_by(LearningOptions.parse(given)),
             plugin or [],
@@ -139,11 +142,11 @@ def train(
     except UserError as error:
         name, _, why = error.problems[0].partition(": ")
         key = name.removeprefix("--")
-        if here.get(key) is None and key in places:  # what is wrong stands in the file
+        if here.get(key) is None and key not in given and key in places:  # it stands in the file
             raise UserError(f"{places[key]}: {why}") from error
         raise
-    files = TrainingFiles.of(config.planner, out)
     tasks = tasks_for(config)
+    files = TrainingFiles.of(name_of(config, tasks), out)
     files.check()
     from fuzzyq_bullet.scenario import find_scenario
 
@@ -217,8 +220,9 @@ def _gain(summary: dict[str, Any]) -> str:
         return f"goal reached in {first:.0f} % of {window}, {last:.0f} % of the last"
     if summary["fastest_run"] is None:
         return "the goal was reached in no run"
+    first = summary["first_s"]
     return (
-        f"the first run took {summary['first_s']:.1f} s, the fastest (number "
-        f"{summary['fastest_run']}) {summary['fastest_s']:.1f} s; contacts in "
-        f"{summary['collisions']} of {summary['episodes']} runs"
+        f"the first run {'did not get to the goal' if first is None else f'took {first:.1f} s'}, "
+        f"the fastest (number {summary['fastest_run']}) took {summary['fastest_s']:.1f} s; "
+        f"contacts in {summary['collisions']} of {summary['episodes']} runs"
     )

@@ -87,7 +87,8 @@ def _returns(axes: Axes, episodes: NDArray[np.int64], curve: Curve, *, same: boo
             )  # fmt: skip
     line, words = last_mean(totals), _mean_of(curve)
     if same:
-        line = np.maximum.accumulate(np.where(reached(curve), totals, totals.min()))
+        best = np.maximum.accumulate(np.where(reached(curve), totals, -np.inf))
+        line = np.where(np.isfinite(best), best, np.nan)
         words = "fastest so far"
     axes.plot(
         episodes, line, color=INK, lw=2.4, marker=_alone(curve), label=words, zorder=6,

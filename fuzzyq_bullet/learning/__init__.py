@@ -3,7 +3,7 @@
 from fuzzyq_bullet.learning.choices import epsilon_greedy, greedy
 from fuzzyq_bullet.learning.fuzzy import FuzzyQLambda
 from fuzzyq_bullet.learning.learners import QLambda, QLearning
-from fuzzyq_bullet.learning.policy import Policy, PolicySpec, load_policy
+from fuzzyq_bullet.learning.policy import Policy, PolicySpec, hash_of, load_policy
 from fuzzyq_bullet.learning.schedules import (
     EXPLORATION,
     LEARNING_RATE,
@@ -36,6 +36,7 @@ __all__ = [
     "episode_rng",
     "epsilon_greedy",
     "greedy",
+    "hash_of",
     "load_policy",
     "train",
 ]

@@ -6,6 +6,7 @@ very same, so the same training gives the same bytes.
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -184,6 +185,11 @@ class Policy(BaseModel):
         if len(text.encode()) > MAX_BYTES:
             raise UserError(f"{path}: too large; a policy has at most {MAX_BYTES} bytes")
         write_text(Path(path), text)
+
+
+def hash_of(policy: Policy) -> str:
+    """Return what identifies the contents of a policy."""
+    return hashlib.sha256(policy.dumps().encode()).hexdigest()[:32]
 
 
 @dataclass(frozen=True, slots=True)

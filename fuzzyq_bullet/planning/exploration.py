@@ -52,7 +52,8 @@ class Judge(Protocol):
         Args:
             observation: What is observed.
             points: Where the frontiers are (m).
-            ways: Length of the known path to each (m).
+            ways: Length of the known path to each (m). The frontier that the robot is on its way to
+                is told a little nearer, so that it does not change its mind for nothing.
             guess: Tells how long the path on from each may be at least (m), by what was seen.
         """
         ...

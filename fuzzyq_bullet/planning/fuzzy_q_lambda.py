@@ -104,6 +104,11 @@ def field_policy(settings: PlannerSettings) -> Policy | None:
     policy = policy_of(settings)
     if (policy.planner, policy.learner) != (settings.name, LEARNER):
         return None
+    if not (settings.breakout and settings.following):
+        raise UserError(
+            f"{settings.policy}: tells which ways out to take, and the planner takes none; "
+            "leave breakout and following on"
+        )
     seconds_of(policy, settings.policy)
     return policy
 

@@ -6,13 +6,14 @@ full speed, and T the learned time from there to the goal,
     Q(s, g) = −t(s, g) − T(place of g)
 
 so ∂Q/∂T = −1: what Eq. 19 asks for, in a table of places. Where T was never learned, the planner's
-own guess stands in: the way on as if there were nothing that was not seen. It is never too long,
+own guess stands in: the way on as if there were nothing that was not seen. It is seldom too long,
 so what is unknown looks good, and is tried.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
@@ -33,6 +34,7 @@ CELL = 2.5
 ELSEWHERE = "elsewhere"
 """The first row of such a policy: of all places that were never tried nothing is known."""
 SECONDS = "seconds to the goal"
+_PLACE = re.compile(r"(0|-?[1-9][0-9]{0,6}) (0|-?[1-9][0-9]{0,6})", re.ASCII)
 
 
 class Choice(NamedTuple):
@@ -115,14 +117,12 @@ def seconds_of(policy: Policy, where: str) -> dict[Place, float]:
         )
     seconds = {}
     for name, (value,) in zip(policy.states[1:], policy.table[1:], strict=True):
-        parts = name.split()
-        try:
-            column, row = map(int, parts)
-        except ValueError:
+        if not _PLACE.fullmatch(name):
             raise UserError(
                 f"{where}: states: {shown(name)} is no place; one is a column and a row, as in "
                 "'3 -1'"
-            ) from None
+            )
+        column, row = map(int, name.split())
         if value < 0.0:
             raise UserError(f"{where}: table: {shown(name)}: no time is less than 0, got {value:g}")
         seconds[column, row] = value

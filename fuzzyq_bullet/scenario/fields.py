@@ -27,5 +27,5 @@ def refuse_other_field(scenario: Scenario) -> None:
         raise UserError(
             f"{getattr(scenario.planner, 'policy', None)}: was learned in another field: arena, "
             "obstacles, goal or robot differ; learn this one with fuzzyq train fuzzy-q-lambda "
-            "--scenario FILE"
+            f"--scenario FILE --seed {scenario.seed}"
         )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, get_args
 
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.learning import Policy
+from fuzzyq_bullet.learning import hash_of
 from fuzzyq_bullet.planning import (
     PlannerSettings,
     fuzzy_q_lambda,
@@ -138,7 +137,8 @@ def planners_of(names: str | Iterable[str]) -> dict[str, PlannerSettings]:
     for part in names.split(",") if isinstance(names, str) else names:
         name = part.strip()
         if name not in planner_names() and name not in VARIANTS:
-            raise UserError(f"--planners: {no_planner(name)}")
+            every = (*planner_names(), *VARIANTS)
+            raise UserError(f"--planners: {not_one_of('planner', name, every)}")
         usual = VARIANTS.get(name)
         chosen[name] = usual or settings_for(name).model_validate({"name": name})
     return chosen
@@ -163,11 +163,6 @@ def in_order(names: Sequence[str]) -> tuple[str, ...]:
     """Return names, each once: the paper's first and in its order, then the rest."""
     known = [name for name in PAPER if name in names]
     return tuple(dict.fromkeys((*known, *names)))
-
-
-def hash_of(policy: Policy) -> str:
-    """Return what identifies the contents of a policy."""
-    return hashlib.sha256(policy.dumps().encode()).hexdigest()[:32]
 
 
 def _described(label: str, settings: PlannerSettings) -> dict[str, Any]:

@@ -77,7 +77,7 @@ def config_for(
     planner: str,
     episodes: int | None,
     drive: str | None,
-    seed: int,
+    seed: int | None,
     scenario: str | None,
     options: LearningOptions = AS_USUAL,
     plugins: Sequence[str] = (),
@@ -88,7 +88,8 @@ def config_for(
         planner: Who learns.
         episodes: Of the training; None for as many as it usually takes.
         drive: What moves the robot; None for kinematic, or to learn a field that of the scenario.
-        seed: Of the training.
+        seed: Of the training; to learn a field, where its random obstacles lie. None for 0, or to
+            learn a field that of the scenario.
         scenario: What it learns on; None for random fields.
         options: How.
         plugins: Modules of the user's own that it needs.
@@ -105,14 +106,16 @@ def config_for(
     own_way = scenario is not None and recipe.in_field is not None
     if episodes is None:
         episodes = recipe.of_field.runs if own_way else USUAL_EPISODES
+    field = load_scenario(scenario, policies=False) if own_way and scenario else None
     if drive is None:
-        drive = (
-            load_scenario(scenario, policies=False).drive if own_way and scenario else "kinematic"
-        )
+        drive = "kinematic" if field is None else field.drive
+    if seed is None:
+        seed = 0 if field is None else field.seed
     if not 1 <= episodes <= MAX_EPISODES:
         raise UserError(f"--episodes: must be from 1 to {MAX_EPISODES}, got {episodes}")
-    if not 0 <= seed <= MOST_SEED:
-        raise UserError(f"--seed: must be from 0 to {MOST_SEED}, got {seed}")
+    most = MOST_SEED if field is None else 2**63 - 1  # a scenario's own
+    if not 0 <= seed <= most:
+        raise UserError(f"--seed: must be from 0 to {most}, got {seed}")
     refuse_unfit(recipe, options, in_field=own_way)
     drives: tuple[Drive, ...] = get_args(Drive)
     for known_drive in drives:
@@ -144,7 +147,9 @@ def tasks_for(config: TrainingConfig) -> Tasks | FieldTask:
     # The planner that learns takes the place of the scenario's own, of which nothing is used.
     settings = settings_for(config.planner).model_validate({"name": config.planner})
     asked = asked.model_copy(update={"planner": settings})
-    realised = realise(asked)  # now rather than in an episode, should obstacles find no place
+    realised = realise(
+        asked, config.seed if recipe.in_field else None
+    )  # now rather than in an episode, should obstacles find no place
     if recipe.in_field is not None:
         return FieldTask(realised.model_copy(update={"drive": config.drive}))
     return recipe.tasks(config.drive, config.seed, asked)

@@ -27,14 +27,14 @@ from pathlib import Path
 import numpy as np
 
 from fuzzyq_bullet.episode import run_in
-from fuzzyq_bullet.learning import Policy, Setup
+from fuzzyq_bullet.learning import Policy, Setup, hash_of
 from fuzzyq_bullet.learning.checkpoint import ROW, SUCCESS, Checkpoint, Curve
 from fuzzyq_bullet.learning.learners import Floats
 from fuzzyq_bullet.learning.schedules import Schedule
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
+from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner, rule_policy
 from fuzzyq_bullet.planning.learned_exits import (
     LEARNER,
     SECONDS,
@@ -78,6 +78,13 @@ class FieldTask:
         """Return a hash of the field."""
         return field_digest(self.scenario)
 
+    def run_digest(self) -> str:
+        """Return a hash of all that a run depends on: the field, and where and how it is driven."""
+        left_out = {"name", "description", "planner", "expect"}
+        return hashlib.sha256(self.scenario.model_dump_json(exclude=left_out).encode()).hexdigest()[
+            :32
+        ]
+
 
 @dataclass
 class FieldMemory:
@@ -100,13 +107,26 @@ class FieldMemory:
         planner.choose_exits_by(exits.judge)
         return run_in(world, task.scenario, planner), exits.choices
 
-    def learn(self, choices: Sequence[Choice], end: float, rate: float, trace: float) -> None:
-        """Learn from a run: η and λ are ``rate`` and ``trace``, ``end`` is when it ended (s).
+    def learn(
+        self,
+        choices: Sequence[Choice],
+        end: float,
+        *,
+        ahead: float = 0.0,
+        rate: float,
+        trace: float,
+    ) -> None:
+        """Learn from a run. Of several choices of one place the last counts: it was known best.
 
-        Of several choices of one place the last counts: by then it was known best.
+        Args:
+            choices: What was chosen, in turn.
+            end: When the run ended (s).
+            ahead: What still lay ahead then (s): nothing in the goal.
+            rate: η.
+            trace: λ.
         """
         learned: dict[Place, float] = {}
-        time, seems, comes = end, 0.0, 0.0
+        time, seems, comes = end, ahead, ahead
         for choice in reversed(choices):
             comes = time - choice.time + (1.0 - trace) * seems + trace * comes
             time, seems = choice.time, choice.seconds
@@ -119,12 +139,13 @@ class FieldMemory:
     ) -> None:
         """Learn from a run, counted from 1, and keep the table it began with if it was the fastest.
 
-        One that did not get there is worth no more than one that ran out of time.
+        Where one ended that did not get there, the goal counts as far as the run's limit of time.
         """
         began, time = self.seconds, float(trajectory.ticks.time[-1])
         there = trajectory.outcome == SUCCESS.decode()
         rate, trace = (one.at(run, setup.episodes) for one in (setup.rate, setup.trace_decay))
-        self.learn(choices, time if there else trajectory.scenario.limits.time, rate, trace)
+        ahead = 0.0 if there else trajectory.scenario.limits.time
+        self.learn(choices, time, ahead=ahead, rate=rate, trace=trace)
         if there and time < self.fastest:
             self.fastest, self.kept = time, began
 
@@ -166,14 +187,15 @@ def learn_field(
         on_episode: Called after every run with the learning curve so far.
 
     Returns:
-        The policy and the learning curve, in which an episode earns minus its time (s).
+        The policy and the learning curve, in which an episode earns minus its time (s), or minus
+        its limit of time if it did not get to the goal.
 
     Raises:
         UserError: If the checkpoint cannot be written, or read, or is that of another training.
     """
     scenario = task.scenario
     plan = {"version": __version__, **setup.describe(), "learner": LEARNER}
-    plan |= {"drive": scenario.drive, "tasks": _whole_digest(scenario)}
+    plan |= {"drive": scenario.drive, **_depends_on(task)}
     memory, curve, done = FieldMemory(), np.zeros(setup.episodes, ROW), 0
     saved = Checkpoint.find(checkpoint) if resume and checkpoint is not None else None
     if saved is not None and checkpoint is not None:
@@ -191,8 +213,10 @@ def learn_field(
             )
             trajectory, choices = memory.drive(task, world)
             memory.after(trajectory, choices, setup, run)
+            outcome = trajectory.outcome.encode()
             time = float(trajectory.ticks.time[-1])
-            curve[run - 1] = -time, len(choices), trajectory.outcome.encode()
+            earned = -time if outcome == SUCCESS else -scenario.limits.time
+            curve[run - 1] = earned, len(choices), outcome
             if checkpoint is not None:
                 Checkpoint(plan, memory.as_table(), curve[:run]).save(checkpoint)
             if on_episode is not None:
@@ -205,12 +229,14 @@ def _policy(
 ) -> Policy:
     reached = np.flatnonzero(curve["outcome"] == SUCCESS)
     fastest = reached[curve["total"][reached].argmax()] if reached.size else None
+    first = -float(curve["total"][0]) if curve["outcome"][0] == SUCCESS else None
     described: dict[str, str | bool | int | float | None] = {
         "rate": setup.rate.start,
         "rate_drop": setup.rate.drop,
         "trace": setup.trace_decay.start,
         "trace_drop": setup.trace_decay.drop,
-        "first_s": -float(curve["total"][0]),
+        **_depends_on(task),
+        "first_s": first,
         "fastest_s": None if fastest is None else -float(curve["total"][fastest]),
         "fastest_run": None if fastest is None else int(fastest) + 1,
     }
@@ -230,7 +256,9 @@ def _policy(
     )
 
 
-def _whole_digest(scenario: Scenario) -> str:
-    """Return a hash of all that a run depends on: the field, and where and how it is driven."""
-    told = scenario.model_dump_json(exclude={"name", "description", "planner", "expect"})
-    return hashlib.sha256(told.encode()).hexdigest()[:32]
+def _depends_on(task: FieldTask) -> dict[str, str]:
+    """Return what the runs of a training depend on beside its schedules.
+
+    That is the field, where and how it is driven, and the weights of the rules.
+    """
+    return {"run": task.run_digest(), "rules": hash_of(rule_policy(FuzzyQLambdaSettings()))}

@@ -79,8 +79,8 @@ def read_options(path: Path) -> tuple[LearningOptions, dict[str, Any], dict[str,
     """Read an options file.
 
     Returns:
-        The options; ``episodes``, ``drive`` and ``seed`` if it has them; and for each of those
-        three where it stands, as messages begin.
+        The options; ``episodes``, ``drive`` and ``seed`` if it has them; and for each key where it
+        stands, as messages begin.
 
     Raises:
         UserError: If it cannot be read or is wrong; one line with file, line and key.
@@ -109,6 +109,7 @@ def read_options(path: Path) -> tuple[LearningOptions, dict[str, Any], dict[str,
                 text = _as_text(value)
             except UserError as error:
                 raise UserError(f"{where}: {error.problems[0]}") from error
+            places[key] = where
             options = options.changed_by(
                 LearningOptions.parse({key: text}, f"{path}:{tree.line_of(key)}: ")
             )

@@ -267,8 +267,8 @@ def refuse_unfit(recipe: Recipe, options: LearningOptions, *, in_field: bool = F
         for name in options.given():
             if name not in takes:
                 raise UserError(
-                    f"--{name}: {recipe.planner} learns the field of a scenario without; it takes "
-                    f"{' and '.join(f'--{one}' for one in takes)}"
+                    f"--{name}: is not used where {recipe.planner} learns one field; "
+                    f"{' and '.join(f'--{one}' for one in takes)} are"
                 )
         return
     known = {*signature(recipe.learner).parameters, *signature(recipe.problem).parameters}

@@ -10,9 +10,9 @@ from typing import Any
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import writable_files
-from fuzzyq_bullet.ground_truth import shortest_path
 from fuzzyq_bullet.learning.checkpoint import WINDOW, Checkpoint, Curve, success
 from fuzzyq_bullet.learning.policy import load_policy
+from fuzzyq_bullet.metrics import shortest_length
 from fuzzyq_bullet.training.config import TrainingConfig
 from fuzzyq_bullet.training.field import FieldTask
 from fuzzyq_bullet.training.registry import learn, recipe_of
@@ -31,13 +31,17 @@ class TrainingFiles:
     checkpoint: Path
 
     @classmethod
-    def of(cls, planner: str, out: str | None) -> TrainingFiles:
+    def of(cls, name: str, out: str | None) -> TrainingFiles:
         """Return what a training writes; ``out`` is the policy, by default in ``FOLDER``.
+
+        Args:
+            name: What it is called there.
+            out: The policy.
 
         Raises:
             UserError: If it is called otherwise.
         """
-        policy = FOLDER / f"{planner}.json" if out is None else Path(out)
+        policy = FOLDER / f"{name}.json" if out is None else Path(out)
         if policy.suffix != ".json":
             raise UserError(f"--out: give a file that ends in .json, got {out!r}")
         return cls(
@@ -149,6 +153,8 @@ def _is_same(config: TrainingConfig, tasks: Tasks | FieldTask, files: TrainingFi
         policy = load_policy(files.policy)
     except UserError:
         return False
+    if isinstance(tasks, FieldTask) and policy.parameters.get("run") != tasks.run_digest():
+        return False
     return (policy.command, policy.scenario) == (config.command, tasks.digest())
 
 
@@ -195,6 +201,12 @@ def learn_policy(
     return curve
 
 
+def name_of(config: TrainingConfig, tasks: Tasks | FieldTask) -> str:
+    """Return what the files of a training are called by default: the planner, and its field."""
+    field = f"-{tasks.scenario.name}" if isinstance(tasks, FieldTask) else ""
+    return f"{config.planner}{field}"
+
+
 def title_of(config: TrainingConfig, tasks: Tasks | FieldTask) -> str:
     """Return the heading of the learning curve."""
     # A scenario's name is of plain letters; its path may hold what no font can show.
@@ -205,13 +217,13 @@ def title_of(config: TrainingConfig, tasks: Tasks | FieldTask) -> str:
 def most_of(tasks: Tasks | FieldTask) -> float | None:
     """Return what an episode can earn at most (s): minus the time of the shortest path.
 
-    None where every episode is another, where there is no path, and of a point that jumps, which
-    has no greatest speed.
+    None where every episode is another, where there is no path or too much in its way, and of a
+    point that jumps, which has no greatest speed.
     """
     if not isinstance(tasks, FieldTask) or tasks.scenario.drive == "kinematic":
         return None
-    route = shortest_path(tasks.scenario)
-    return None if route is None else -route.length / tasks.scenario.robot.max_speed
+    length = shortest_length(tasks.scenario)
+    return None if length is None else -length / tasks.scenario.robot.max_speed
 
 
 def summary_of(

@@ -61,6 +61,7 @@ def test_a_contact_in_any_run_misses_a_target_and_all_families_come_together() -
     assert (both.feasible, both.found, both.collisions) == (2, 1, 1)
     missed = [str(one) for one in targets_of(both) if not one.met]
     assert "environments with a contact 1.000 instead of exactly 0" in missed
+    assert "environments that only the first run crossed 1.000 instead of exactly 0" in missed
 
 
 def job(who: str, run: int = 4, drive: Any = "kinematic") -> Job:
@@ -87,7 +88,7 @@ def test_a_single_crossing_is_the_first_run() -> None:
     assert learn_and_drive(scenario, 1).digest() == keep_map_and_drive(scenario, 1).digest()
 
 
-@pytest.mark.parametrize("crossings", ["none", "0", "3,0"])
+@pytest.mark.parametrize("crossings", ["none", "0", "3,0", "x", "101", "9999999999999"])
 def test_a_field_must_be_crossed_to_be_learned(crossings: str) -> None:
     with pytest.raises(UserError, match="--crossings: "):
         Familiar(crossings=crossings).plan()

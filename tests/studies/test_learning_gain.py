@@ -18,7 +18,7 @@ from scipy.stats import binom
 from fuzzyq_bullet import UserError
 from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.cli.study import printed
-from fuzzyq_bullet.learning import Policy
+from fuzzyq_bullet.learning import Policy, hash_of
 from fuzzyq_bullet.planning.fuzzy_q_lambda import CHOICES
 from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.studies import Findings
@@ -39,7 +39,6 @@ from fuzzyq_bullet.studies.learning.table import (
     summary_of,
     time_ratios,
 )
-from fuzzyq_bullet.studies.options import hash_of
 from fuzzyq_bullet.studies.selection import (
     HALF,
     ONE,

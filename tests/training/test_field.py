@@ -23,8 +23,10 @@ from fuzzyq_bullet.planning.learned_exits import (
     rows_of,
     seconds_of,
 )
-from fuzzyq_bullet.scenario import Scenario, Start, dump_scenario, random_task, realise
+from fuzzyq_bullet.scenario import Limits, Scenario, Start, dump_scenario, random_task, realise
+from fuzzyq_bullet.scenario.fields import field_digest
 from fuzzyq_bullet.training.field import FieldMemory, FieldTask, field_setup, learn_field
+from tests.helpers.commands import Call
 from tests.helpers.exploring import observe
 
 RUNS = 6
@@ -94,17 +96,17 @@ def test_the_same_training_gives_the_same_bytes_and_goes_on_where_it_was(
 
     with pytest.raises(EndedError):
         learn_field(
-            task, field_setup(RUNS, 0), command=command, checkpoint=checkpoint, on_episode=end
+            task, field_setup(RUNS, 9004), command=command, checkpoint=checkpoint, on_episode=end
         )
     assert len(Checkpoint.load(checkpoint).curve) == 3
     policy, _ = learn_field(
-        task, field_setup(RUNS, 0), command=command, checkpoint=checkpoint, resume=True
+        task, field_setup(RUNS, 9004), command=command, checkpoint=checkpoint, resume=True
     )
     assert policy.dumps() == learned.read_text()
     other = FieldTask(task.scenario.model_copy(update={"start": Start(position=(5.0, 5.0))}))
-    with pytest.raises(UserError, match="belongs to another training: tasks was"):
+    with pytest.raises(UserError, match="belongs to another training: run was"):
         learn_field(
-            other, field_setup(RUNS, 0), command=command, checkpoint=checkpoint, resume=True
+            other, field_setup(RUNS, 9004), command=command, checkpoint=checkpoint, resume=True
         )
 
 
@@ -179,7 +181,7 @@ def test_a_place_that_was_learned_counts_and_another_looks_as_it_did() -> None:
 def test_what_came_after_a_choice_is_learned_backwards() -> None:
     memory = FieldMemory()
     first, second = Choice(0.0, (0, 0), 10.0, 8.0), Choice(6.0, (1, 1), 12.0, 9.0)
-    memory.learn([first, second], end=20.0, rate=0.5, trace=0.5)
+    memory.learn([first, second], 20.0, rate=0.5, trace=0.5)
     late = 14.0 - 12.0  # than it seemed at the second choice
     early = 6.0 + 0.5 * 12.0 + 0.5 * 14.0 - 10.0
     assert memory.seconds == pytest.approx({(1, 1): 9.0 + 0.5 * late, (0, 0): 8.0 + 0.5 * early})
@@ -188,8 +190,95 @@ def test_what_came_after_a_choice_is_learned_backwards() -> None:
 def test_without_traces_a_choice_learns_from_the_next_alone() -> None:
     memory = FieldMemory()
     first, second = Choice(0.0, (0, 0), 10.0, 8.0), Choice(6.0, (1, 1), 12.0, 9.0)
-    memory.learn([first, second], end=500.0, rate=1.0, trace=0.0)
+    memory.learn([first, second], 500.0, rate=1.0, trace=0.0)
     assert memory.seconds[0, 0] == 8.0 + (6.0 + 12.0 - 10.0)
+
+
+@given(
+    st.lists(st.tuples(st.floats(0.1, 9.0), st.floats(1.0, 99.0), st.floats(0.0, 1.0)), min_size=1)
+)
+def test_where_a_run_did_not_arrive_no_exit_looks_better_than_before(
+    chosen: list[tuple[float, float, float]],
+) -> None:
+    choices, time = [], 0.0
+    for k, (later, seems, share) in enumerate(chosen):
+        time += later
+        choices.append(Choice(time, (k, 0), seems, share * seems))
+    memory = FieldMemory()
+    memory.learn(choices, time + 1.0, ahead=100.0, rate=0.3, trace=1.0)
+    assert all(memory.seconds[one.place] >= one.beyond for one in choices)
+
+
+def test_a_run_that_times_out_is_worth_its_limit_and_more(field_file: Path, tmp_path: Path) -> None:
+    scenario = realise(load_scenario(field_file))
+    hurried = scenario.model_copy(update={"limits": Limits(time=8.0)})
+    policy, curve = learn_field(FieldTask(hurried), field_setup(2, 0), command="")
+    assert set(curve["outcome"]) == {b"timeout"}
+    assert curve["total"].tolist() == [-8.0, -8.0]
+    assert policy.parameters["fastest_run"] is policy.parameters["first_s"] is None
+    assert policy.states == ("elsewhere",)
+
+
+def test_a_finished_training_is_not_replaced_by_that_of_another_start(
+    field_file: Path, learned: Path, tmp_path: Path
+) -> None:
+    mine = tmp_path / "learned.json"
+    mine.write_bytes(learned.read_bytes())
+    told = load_scenario(field_file).model_dump(mode="json", exclude_none=True)
+    file = tmp_path / field_file.name
+    file.write_text(json.dumps({**told, "limits": {"time": 9.0}}))
+    with pytest.raises(UserError, match="is there already, and not of this training"):
+        call("train", "fuzzy-q-lambda", "--scenario", file, "--episodes", RUNS, "--out", mine)
+    assert mine.read_bytes() == learned.read_bytes()
+
+
+def test_the_seed_says_where_the_obstacles_of_the_field_lie(tmp_path: Path) -> None:
+    file = tmp_path / "drawn.yaml"
+    file.write_text(
+        "name: drawn\nseed: 3\nstart: {position: [1, 1]}\ngoal: {position: [9, 9]}\n"
+        "drive: kinematic\nrandom: {count: 20}\n"
+    )
+    for seed in (3, 4):
+        asked = () if seed == 3 else ("--seed", seed)
+        call("train", "fuzzy-q-lambda", "--scenario", file, "--episodes", 1, *asked,
+             "--out", tmp_path / f"{seed}.json")  # fmt: skip
+        policy = load_policy(tmp_path / f"{seed}.json")
+        assert f"--seed {seed}" in policy.command
+        assert policy.scenario == field_digest(realise(load_scenario(file), seed))
+    with pytest.raises(UserError, match=r"learned in another field.* --seed 3"):
+        load_scenario(using(file, tmp_path / "4.json"))
+
+
+@pytest.mark.parametrize("off", ["breakout", "following"])
+def test_without_ways_out_what_was_learned_of_them_is_refused(
+    off: str, field_file: Path, learned: Path, tmp_path: Path
+) -> None:
+    mine = tmp_path / "mine.json"
+    mine.write_bytes(learned.read_bytes())
+    planner = {"name": "fuzzy-q-lambda", "policy": str(mine), off: False}
+    with pytest.raises(UserError, match="leave breakout and following on"):
+        load_scenario(using(field_file, mine, planner=planner))
+
+
+def test_by_default_the_files_are_called_by_planner_and_field(
+    field_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    call("train", "fuzzy-q-lambda", "--scenario", field_file, "--episodes", 1)
+    assert (tmp_path / "out/train/fuzzy-q-lambda-scatter-9004.json").exists()
+
+
+@pytest.mark.slow
+def test_the_fastest_run_is_driven_again_in_physics_in_another_process(
+    field_file: Path, tmp_path: Path, fuzzyq: Call
+) -> None:
+    policy = tmp_path / "wheels.json"
+    call("train", "fuzzy-q-lambda", "--scenario", field_file, "--episodes", 3, "--drive", "wheels",
+         "--out", policy)  # fmt: skip
+    file = using(field_file, policy, drive="wheels")
+    done = fuzzyq("run", file, "--no-video", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["time_s"] == load_policy(policy).parameters["fastest_s"]
 
 
 @given(

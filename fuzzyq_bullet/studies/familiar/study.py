@@ -17,19 +17,29 @@ from fuzzyq_bullet.studies.escape.bounds import DRIVERS
 from fuzzyq_bullet.studies.escape.table import TRAPS
 from fuzzyq_bullet.studies.familiar.drivers import KEPT, LEARNED, label_of
 from fuzzyq_bullet.studies.familiar.table import FIRST, lines_of, shown, targets_of
-from fuzzyq_bullet.studies.options import counts_of, one_drive_of
-from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
+from fuzzyq_bullet.studies.options import counts_of, described, one_drive_of
+from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, PlannerDescription, Seed
 from fuzzyq_bullet.studies.registry import register_study
 from fuzzyq_bullet.studies.study import Findings, Results, Study, Swept, Work, met_by_all, numbers
+from fuzzyq_bullet.training.field import RATE, TRACE
+from fuzzyq_bullet.wording import shorten
 
 KEPT_RUNS = 10
 """Runs with the map kept: more change nothing."""
+MOST_CROSSINGS = 100
+"""More of one field would not be done before a worker's time is up."""
+
+
+def _schedules() -> dict[str, float]:
+    return {"rate": RATE.start, "trace": TRACE.start}
 
 
 class FamiliarPlan(Plan):
     """Fields and traps, each crossed again and again.
 
     Attributes:
+        planner: The settings of the planner that all have, with the hash of its weights.
+        learning: η and λ of the robot that learns, by name.
         drive: What moves the robot.
         runs: Fields for every count.
         counts: Numbers of scattered obstacles.
@@ -39,6 +49,8 @@ class FamiliarPlan(Plan):
         limits: When a run is given up.
     """
 
+    planner: PlannerDescription
+    learning: dict[str, float] = Field(default_factory=_schedules)
     drive: Drive = "wheels"
     runs: Number
     counts: tuple[Number, ...]
@@ -72,10 +84,10 @@ class FamiliarPlan(Plan):
 class Familiar(Study):
     """Let a robot cross the same field again and again; print how much faster it becomes.
 
-    Beside its first run and what it has learned: a robot that keeps its map instead, exits told by
-    the truth, and the true shortest path. May be ended at any moment: the same command goes on
-    where it was. Writes familiar.csv, a row for every robot and field, and familiar.json. Exit code
-    1 when a target is missed.
+    Beside its first run and what it has learned: a robot that keeps its map instead, one that is
+    told how far it is to the goal from every exit, and the true shortest path. May be ended at any
+    moment: the same command goes on where it was. Writes familiar.csv, a row for every robot and
+    field, and familiar.json. Exit code 1 when a target is missed.
     """
 
     name: ClassVar[str] = "familiar"
@@ -97,11 +109,10 @@ class Familiar(Study):
 
     def plan(self) -> FamiliarPlan:
         """Return what is run; asking for nothing is a mistake too."""
-        crossings = counts_of(self.crossings, "--crossings")
-        if not crossings or min(crossings) < 1:
-            raise UserError("--crossings: a robot must cross a field once at least to learn it")
+        crossings = _crossings_of(self.crossings)
         plan = FamiliarPlan(
             sweep=self.name,
+            planner=described({"": FuzzyQLambdaSettings()})[""],
             drive=one_drive_of(self.drive),
             runs=self.runs,
             counts=counts_of(self.counts, "--counts"),
@@ -152,3 +163,19 @@ class Familiar(Study):
         from fuzzyq_bullet.studies.familiar.drivers import work
 
         return work
+
+
+def _crossings_of(text: str) -> tuple[int, ...]:
+    """Return after how many runs the robot is asked, sorted, each once.
+
+    Raises:
+        UserError: If one is no such number.
+    """
+    parts = [part.strip() for part in text.split(",")]
+    for part in parts:
+        if not (part.isascii() and part.isdigit() and 1 <= int(part[:9]) <= MOST_CROSSINGS):
+            raise UserError(
+                f"--crossings: {shorten(part)} is no number of runs; give numbers from 1 to "
+                f"{MOST_CROSSINGS} with commas between"
+            )
+    return tuple(sorted(set(map(int, parts))))

@@ -31,6 +31,7 @@ class Line:
         who: What rows call it.
         feasible: Environments that have a way.
         found: In how many of them it reached the goal.
+        lost: In how many it did not, although the first run did.
         collisions: In how many of all it touched anything, in any of its runs.
         time: Mean time to the goal (s); None without any.
         of_first: Its mean time over that of the first run, where both reached the goal.
@@ -42,6 +43,7 @@ class Line:
     who: str
     feasible: int
     found: int
+    lost: int
     collisions: int
     time: float | None
     of_first: Estimate | None
@@ -81,12 +83,13 @@ def lines_of(rows: Iterable[Row], planners: Sequence[str]) -> list[Line]:
 
 
 def targets_of(line: Line) -> list[Target]:
-    """Return what the issue of learning a field asks for; what was not measured is left out."""
+    """Return what is asked of a robot that has learned; what was not measured is left out."""
     asked: list[tuple[str, float | None, Sense, float]] = [
         ("mean time over the first run's", _value(line.of_first), "at most", MOST_OF_FIRST),
         ("mean time over true exits'", _value(line.of_exits), "at most", MOST_OF_EXITS),
         ("worst time over its own first run's", line.worst, "at most", MOST_OF_OWN),
         ("environments with a contact", float(line.collisions), "exactly", 0.0),
+        ("environments that only the first run crossed", float(line.lost), "exactly", 0.0),
     ]
     return [
         Target(what, figure, sense, bound)
@@ -114,11 +117,11 @@ def shown(lines: Sequence[Line], about: str) -> Table:
     caption = (
         f"Crossing the same field again. {about} learned-N: the fastest of N runs of a robot that "
         "learns; kept-map-N: of one that keeps its map instead; true-exits: told how far it is to "
-        "the goal from every exit; true-path: the true shortest path. time: mean, s; of first, of "
-        "exits: mean time in times of the first run's and of true-exits' [95 %]; worst: greatest "
-        "time in times of its own first run."
+        "the goal from every exit; true-path: the true shortest path. time: mean (s); / first, "
+        "/ exits: mean time over that of first-run and of true-exits, in the fields that both "
+        "crossed [95 %]; worst: greatest time over that of the first run in the same field."
     )
-    headings = ("obstacles", "who", "found", "hits", "time", "of first", "of exits", "worst")
+    headings = ("obstacles", "who", "found", "hits", "time", "/ first", "/ exits", "worst")
     return Table(caption, headings, cells, (0, 1))
 
 
@@ -136,6 +139,11 @@ def _line(family: str, who: str, sets: Mapping[str, Mapping[Place, Row]]) -> Lin
         who=who,
         feasible=len(own),
         found=sum(row.success for row in own),
+        lost=sum(
+            sets[FIRST][place].success and not row.success
+            for place, row in ours.items()
+            if place in sets[FIRST]
+        ),
         collisions=sum(row.collisions or 0 for row in ours.values()),
         time=fmean(times) if times else None,
         of_first=None if who == FIRST else _ratio(pairs),

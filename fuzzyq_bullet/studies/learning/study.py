@@ -14,14 +14,14 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.learning import Policy
+from fuzzyq_bullet.learning import Policy, hash_of
 from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, PlannerSettings
 from fuzzyq_bullet.scenario import Drive, Limits
 from fuzzyq_bullet.studies.episodes import MOST_RUNS, Environment
 from fuzzyq_bullet.studies.learning.table import LEARNED, summary_of, time_ratios
-from fuzzyq_bullet.studies.options import counts_of, hash_of, one_drive_of
+from fuzzyq_bullet.studies.options import counts_of, one_drive_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, Seed
 from fuzzyq_bullet.studies.registry import register_study
 from fuzzyq_bullet.studies.selection import (

@@ -22,6 +22,8 @@ from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import Limits, realise
 from fuzzyq_bullet.studies.episodes import Environment, Job, Row
+from fuzzyq_bullet.studies.options import POSITIONAL
+from fuzzyq_bullet.studies.positional import learn_and_drive
 from fuzzyq_bullet.studies.report.found import Found
 from fuzzyq_bullet.studies.success.table import by_planner
 from fuzzyq_bullet.studies.sweep import local_pool
@@ -222,7 +224,8 @@ def _film(wanted: Wanted, folder: Path) -> dict[str, Any]:
         where = Environment(row.layout, row.count, row.run, row.seed)
         settings = _planner(wanted.planner)
         job = Job(where, row.planner, settings, row.drive, wanted.limits)
-        trajectory = run(realise(job.scenario()))
+        drive = learn_and_drive if row.planner in POSITIONAL else run
+        trajectory = drive(realise(job.scenario()))
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where_ = ".".join(map(str, first["loc"]))
