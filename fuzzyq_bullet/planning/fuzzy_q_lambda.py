@@ -79,6 +79,10 @@ def learned_policy(file: str | None) -> Policy:
     except ValidationError as error:
         why = error.errors(include_url=False)[0]["msg"]
         raise UserError(f"policy: {shorten(file)}: {why}") from error
+    if field_policy(settings) is not None:
+        raise UserError(
+            f"{file}: tells what the ways out of a field are worth, not how rules weigh"
+        )
     return policy_of(settings, POLICY_SPEC)
 
 

@@ -260,6 +260,16 @@ def test_without_ways_out_what_was_learned_of_them_is_refused(
         load_scenario(using(field_file, mine, planner=planner))
 
 
+@pytest.mark.parametrize("command", [("explain", "--policy"), ("figure", "weights")])
+def test_who_asks_for_the_weights_of_rules_is_told_that_there_are_none(
+    command: tuple[str, ...], learned: Path
+) -> None:
+    with pytest.raises(UserError) as caught:
+        call(*command, learned)
+    [line] = caught.value.problems
+    assert line == f"{learned}: tells what the ways out of a field are worth, not how rules weigh"
+
+
 def test_by_default_the_files_are_called_by_planner_and_field(
     field_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
