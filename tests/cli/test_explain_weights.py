@@ -65,7 +65,7 @@ def trained(fuzzyq: Call, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pat
     folder = tmp_path_factory.mktemp("trained")
     files = folder / "one" / "p.json", folder / "two" / "p.json"
     for planner, file in zip(("fuzzy-q-lambda", "q-lambda"), files, strict=True):
-        done = fuzzyq("train", planner, "--scenario", "open-field", "--episodes", 3, "--out", file)
+        done = fuzzyq("train", planner, "--episodes", 3, "--out", file)
         assert done.returncode == 0, done.stderr
     return files
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from tests.helpers.commands import Call
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "extend" / "reward.py"
-ASKED = ("train", "fuzzy-q-lambda", "--scenario", "open-field", "--episodes", 2, "--trace", 0.8)
+ASKED = ("train", "fuzzy-q-lambda", "--episodes", 2, "--trace", 0.8)
 
 
 def test_a_training_is_rewarded_by_the_example_and_its_policy_says_so(

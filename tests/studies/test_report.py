@@ -19,6 +19,7 @@ from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.studies import FieldsPlan, Plan, described, planners_of
 from fuzzyq_bullet.studies.episodes import Environment, Row, as_csv, from_csv
 from fuzzyq_bullet.studies.escape.study import Escape
+from fuzzyq_bullet.studies.familiar.study import Familiar
 from fuzzyq_bullet.studies.learning.study import NO_CONTROLLER, ComparisonPlan
 from fuzzyq_bullet.studies.learning.table import LEARNED
 from fuzzyq_bullet.studies.report.films import picked
@@ -190,7 +191,7 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.tags.append((tag, dict(attrs)))
-        if tag not in {"meta", "link", "img"}:
+        if tag not in {"meta", "link", "img", "br"}:
             self.open.append(tag)
 
     def handle_endtag(self, tag: str) -> None:
@@ -237,6 +238,8 @@ def test_every_sweep_of_a_folder_is_on_the_page(
         planner="fuzzy", drive="wheels", runs=1, counts="5", traps=4, rectangles="30"
     ).plan()
     write(home / "escape", fields.model_dump(mode="json"), rows_of(fields), "escape.csv")
+    again = Familiar(runs=1, counts="5", traps=1).plan()
+    write(home / "familiar", again.model_dump(mode="json"), rows_of(again), "familiar.csv")
 
     assert report(monkeypatch, home, *PLAIN) == 0
     assert capsys.readouterr().out == f"{home / 'report.html'}\n"
