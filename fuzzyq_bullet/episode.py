@@ -12,6 +12,7 @@ from fuzzyq_bullet.consult import ask, build_planner, refusal
 from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.drives.wheels import DECISIONS_A_SECOND
+from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
@@ -70,9 +71,19 @@ def run_with(
     Raises:
         PlannerError: If the planner raises, exits or decides what cannot be carried out.
     """
-    build = World if scenario.drive == "wheels" else SensorWorld
-    with build(scenario.obstacles, scenario.arena, model=scenario.robot.spec) as world:
+    with world_of(scenario) as world:
         return run_in(world, scenario, planner, progress=progress)
+
+
+def world_of(scenario: Scenario, engine: Engine | None = None) -> SensorWorld:
+    """Build the world of a realised scenario, with a robot to be touched if wheels drive it.
+
+    Args:
+        scenario: The scenario.
+        engine: An engine to build in, emptied first; by default a new one that the world owns.
+    """
+    build = World if scenario.drive == "wheels" else SensorWorld
+    return build(scenario.obstacles, scenario.arena, engine=engine, model=scenario.robot.spec)
 
 
 def run_in(

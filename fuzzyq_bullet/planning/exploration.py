@@ -6,7 +6,8 @@ import heapq
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol, TypeAlias
+from functools import partial
+from typing import NamedTuple, TypeAlias
 
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
@@ -36,51 +37,35 @@ that lies in no obstacle. A gap is entered. Elsewhere what lies before the point
 free, and so is, where the sight ended and nothing stood, what lies between the two."""
 
 
-class Judge(Protocol):
-    """Says what the way to the goal over each frontier costs; the least is chosen."""
+class WaysOut(NamedTuple):
+    """The frontiers that there are to choose from.
 
-    def __call__(
-        self,
-        observation: Observation,
-        points: Sequence[Point],
-        ways: Sequence[float],
-        guess: Callable[[], Sequence[float]],
-        /,
-    ) -> Sequence[float]:
-        """Return the costs, in any unit.
+    Attributes:
+        observation: What is observed.
+        points: Where they are (m).
+        ways: Length of the known path to each (m). The frontier that the robot is on its way to is
+            told a little nearer, so that it does not change its mind for nothing.
+        guess: Tells how long the path on from each may be at least (m), by what was seen.
+    """
 
-        Args:
-            observation: What is observed.
-            points: Where the frontiers are (m).
-            ways: Length of the known path to each (m). The frontier that the robot is on its way to
-                is told a little nearer, so that it does not change its mind for nothing.
-            guess: Tells how long the path on from each may be at least (m), by what was seen.
-        """
-        ...
+    observation: Observation
+    points: Sequence[Point]
+    ways: Sequence[float]
+    guess: Callable[[], Sequence[float]]
 
 
-def as_it_looks(
-    observation: Observation,
-    points: Sequence[Point],
-    ways: Sequence[float],
-    guess: Callable[[], Sequence[float]],
-) -> list[float]:
-    """Judge frontiers by what was seen in this episode: the planner's own way (``Judge``)."""
-    return [way + on for way, on in zip(ways, guess(), strict=True)]
+Judge: TypeAlias = Callable[[WaysOut], Sequence[float]]
+"""Says what the way to the goal over each frontier costs, in any unit; the least is chosen."""
+
+
+def as_it_looks(out: WaysOut) -> list[float]:
+    """Judge frontiers by what was seen in this episode: the planner's own way."""
+    return [way + on for way, on in zip(out.ways, out.guess(), strict=True)]
 
 
 def knowing(to_go: ToGo) -> Judge:
     """Return who judges frontiers by the true way on: for bounds and training only."""
-
-    def judge(
-        observation: Observation,
-        points: Sequence[Point],
-        ways: Sequence[float],
-        guess: Callable[[], Sequence[float]],
-    ) -> list[float]:
-        return [way + to_go(*point) for way, point in zip(ways, points, strict=True)]
-
-    return judge
+    return lambda out: [way + to_go(*at) for way, at in zip(out.ways, out.points, strict=True)]
 
 
 @dataclass(slots=True)
@@ -186,7 +171,8 @@ class ExplorationGraph:
         if kept in self._frontiers:
             ways[self._frontiers.index(kept)] -= switch
         points = [one.point for one in self._frontiers]
-        costs = self.judge(observation, points, ways, lambda: self._ways_on(ways, observation.goal))
+        guess = partial(self._ways_on, ways, observation.goal)
+        costs = self.judge(WaysOut(observation, points, ways, guess))
         chosen = self._frontiers[min(range(len(costs)), key=costs.__getitem__)]
         if kept in self._frontiers and math.dist(chosen.point, kept.point) <= NEAR:
             chosen = kept  # the same place, seen from elsewhere

@@ -113,7 +113,6 @@ def field_policy(settings: PlannerSettings) -> Policy | None:
             f"{settings.policy}: tells which ways out to take, and the planner takes none; "
             "leave breakout and following on"
         )
-    seconds_of(policy, settings.policy)
     return policy
 
 
@@ -149,7 +148,7 @@ class FuzzyQLambdaPlanner(ImprovedFuzzyBase):
         self._weights = weights_of(rule_policy(settings))
         field = field_policy(settings)
         if field is not None:
-            self.choose_exits_by(LearnedExits(seconds_of(field, field.planner)).judge)
+            self.choose_exits_by(LearnedExits(seconds_of(field, str(settings.policy))).judge)
 
     def decide(self, observation: Observation, /) -> Decision:
         """Return the decision with the weights of the rules that fire (Step 10)."""

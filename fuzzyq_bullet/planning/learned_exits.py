@@ -14,14 +14,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import NamedTuple, TypeAlias
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy
-from fuzzyq_bullet.planning.base import USUAL_SPEED, Observation
-from fuzzyq_bullet.planning.exploration import ENCLOSED
-from fuzzyq_bullet.planning.scan import Point
+from fuzzyq_bullet.planning.base import USUAL_SPEED
+from fuzzyq_bullet.planning.exploration import ENCLOSED, WaysOut
 from fuzzyq_bullet.untrusted import shown
 
 Place: TypeAlias = tuple[int, int]
@@ -67,24 +66,19 @@ class LearnedExits:
         self._seconds = seconds
         self.choices: list[Choice] = []
 
-    def judge(
-        self,
-        observation: Observation,
-        points: Sequence[Point],
-        ways: Sequence[float],
-        guess: Callable[[], Sequence[float]],
-    ) -> list[float]:
-        """Return what the way to the goal over each temporary goal takes (s): −Q (``Judge``)."""
+    def judge(self, out: WaysOut) -> list[float]:
+        """Return what the way to the goal over each temporary goal takes (s): −Q."""
+        observation = out.observation
         speed = USUAL_SPEED if observation.motion is None else observation.motion.max_speed
-        guesses = guess()
+        guesses = out.guess()
         side = CELL * observation.unit
-        places = [(math.floor(x / side), math.floor(y / side)) for x, y in points]
+        places = [(math.floor(x / side), math.floor(y / side)) for x, y in out.points]
         beyond = [
             # What is walled in by all that was seen stays so, whatever the rest of its place is.
             guessed / speed if guessed >= ENCLOSED else self._seconds.get(place, guessed / speed)
             for place, guessed in zip(places, guesses, strict=True)
         ]
-        costs = [way / speed + on for way, on in zip(ways, beyond, strict=True)]
+        costs = [way / speed + on for way, on in zip(out.ways, beyond, strict=True)]
         best = min(range(len(costs)), key=costs.__getitem__)
         self.choices.append(Choice(observation.time, places[best], costs[best], beyond[best]))
         return costs

@@ -254,6 +254,25 @@ def meets(figure: float, sense: Sense, bound: float) -> bool:
     return figure <= bound if sense == "at most" else figure >= bound
 
 
+@dataclass(frozen=True)
+class Target:
+    """What a figure should be; it is None where there was nothing to measure."""
+
+    what: str
+    figure: float | None
+    bound: float
+    sense: Sense
+
+    @property
+    def met(self) -> bool:
+        """Whether it is met; a gain that could not be measured is none."""
+        return self.figure is not None and meets(self.figure, self.sense, self.bound)
+
+    def __str__(self) -> str:
+        seen = "not measured" if self.figure is None else f"{self.figure:.4g}"
+        return f"{self.what} {seen}, wanted {self.sense} {self.bound:g}"
+
+
 def numbers(counts: Sequence[int]) -> str:
     """Return numbers of obstacles as options give them."""
     return ",".join(map(str, counts)) or "none"

@@ -103,10 +103,11 @@ def config_for(
         hint = "" if known else did_you_mean(planner, RECIPES)
         raise UserError(f"PLANNER: {what}; {hint}those that learn: {', '.join(RECIPES)}")
     recipe = RECIPES[planner]
-    own_way = scenario is not None and recipe.in_field is not None
+    field = None
+    if scenario is not None and recipe.in_field is not None:
+        field = load_scenario(scenario, policies=False)
     if episodes is None:
-        episodes = recipe.of_field.runs if own_way else USUAL_EPISODES
-    field = load_scenario(scenario, policies=False) if own_way and scenario else None
+        episodes = USUAL_EPISODES if field is None else recipe.of_field.runs
     if drive is None:
         drive = "kinematic" if field is None else field.drive
     if seed is None:
@@ -116,7 +117,7 @@ def config_for(
     most = MOST_SEED if field is None else 2**63 - 1  # a scenario's own
     if not 0 <= seed <= most:
         raise UserError(f"--seed: must be from 0 to {most}, got {seed}")
-    refuse_unfit(recipe, options, in_field=own_way)
+    refuse_unfit(recipe, options, in_field=field is not None)
     drives: tuple[Drive, ...] = get_args(Drive)
     for known_drive in drives:
         if drive == known_drive:
@@ -147,11 +148,10 @@ def tasks_for(config: TrainingConfig) -> Tasks | FieldTask:
     # The planner that learns takes the place of the scenario's own, of which nothing is used.
     settings = settings_for(config.planner).model_validate({"name": config.planner})
     asked = asked.model_copy(update={"planner": settings})
-    realised = realise(
-        asked, config.seed if recipe.in_field else None
-    )  # now rather than in an episode, should obstacles find no place
     if recipe.in_field is not None:
-        return FieldTask(realised.model_copy(update={"drive": config.drive}))
+        field = realise(asked, config.seed)
+        return FieldTask(field.model_copy(update={"drive": config.drive}))
+    realise(asked)  # now rather than in an episode, should its obstacles find no place
     return recipe.tasks(config.drive, config.seed, asked)
 
 

@@ -16,6 +16,7 @@ from fuzzyq_bullet.cli import app
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.learning import load_policy
 from fuzzyq_bullet.learning.checkpoint import Checkpoint
+from fuzzyq_bullet.planning.exploration import WaysOut
 from fuzzyq_bullet.planning.learned_exits import (
     Choice,
     LearnedExits,
@@ -171,11 +172,11 @@ def test_a_place_that_was_learned_counts_and_another_looks_as_it_did() -> None:
     exits = LearnedExits({(4, 0): 50.0})
     seen = observe(Field(), (0.0, 0.0), goal=(6.0, 0.0), time=3.0)
     points, ways = [(2.2, 0.2), (0.0, 2.2)], [1.2, 2.4]
-    costs = exits.judge(seen, points, ways, lambda: [3.6, 6.0])
+    costs = exits.judge(WaysOut(seen, points, ways, lambda: [3.6, 6.0]))
     assert costs == pytest.approx([2.0 + 50.0, 4.0 + 10.0])  # at 0.6 m/s
     assert exits.choices == [Choice(3.0, (0, 4), costs[1], 10.0)]
     # What is walled in stays so, whatever was learned of its place.
-    assert exits.judge(seen, points, ways, lambda: [1000.0, 6.0])[0] > 1000.0
+    assert exits.judge(WaysOut(seen, points, ways, lambda: [1000.0, 6.0]))[0] > 1000.0
 
 
 def test_what_came_after_a_choice_is_learned_backwards() -> None:

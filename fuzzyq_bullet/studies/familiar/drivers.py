@@ -10,11 +10,10 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from fuzzyq_bullet.episode import run, run_in
+from fuzzyq_bullet.episode import run, run_in, world_of
 from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
-from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.scenario import Scenario
@@ -83,14 +82,10 @@ def _fastest(
 
     Where there is no way a single run is enough.
     """
-    build = World if scenario.drive == "wheels" else SensorWorld
     best: Trajectory | None = None
     with Engine() as engine:
         for number in range(1, (runs if feasible(scenario, ROOM) else 1) + 1):
-            world = build(
-                scenario.obstacles, scenario.arena, engine=engine, model=scenario.robot.spec
-            )
-            trajectory = cross(world, number)
+            trajectory = cross(world_of(scenario, engine), number)
             if trajectory.outcome == "collision":
                 return trajectory
             if best is None or _is_better(trajectory, best):

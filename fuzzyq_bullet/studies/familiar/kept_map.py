@@ -8,10 +8,8 @@ shorter by more than ``PRICE``, and only in one run.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 
-from fuzzyq_bullet.planning.base import Observation
-from fuzzyq_bullet.planning.exploration import ENCLOSED, NEAR, ExplorationGraph
+from fuzzyq_bullet.planning.exploration import ENCLOSED, NEAR, ExplorationGraph, WaysOut
 from fuzzyq_bullet.planning.scan import Point
 
 PRICE = 2.0
@@ -37,20 +35,15 @@ class KeptMap:
         self._tried += self._chosen
         self._chosen = []
 
-    def _judge(
-        self,
-        observation: Observation,
-        points: Sequence[Point],
-        ways: Sequence[float],
-        guess: Callable[[], Sequence[float]],
-    ) -> list[float]:
-        """Judge ways out by what was seen in all runs (``planning.exploration.Judge``)."""
+    def _judge(self, out: WaysOut) -> list[float]:
+        """Judge ways out by what was seen in all runs."""
+        goal = out.observation.goal
         costs = [
-            way + on + (0.0 if point == observation.goal else self._price(point))
-            for point, way, on in zip(points, ways, guess(), strict=True)
+            way + on + (0.0 if point == goal else self._price(point))
+            for point, way, on in zip(out.points, out.ways, out.guess(), strict=True)
         ]
-        chosen = points[min(range(len(costs)), key=costs.__getitem__)]
-        if chosen != observation.goal and chosen not in self._chosen:
+        chosen = out.points[min(range(len(costs)), key=costs.__getitem__)]
+        if chosen != goal and chosen not in self._chosen:
             self._chosen.append(chosen)
         return costs
 

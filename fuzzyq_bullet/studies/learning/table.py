@@ -25,7 +25,7 @@ from fuzzyq_bullet.studies.statistics import (
     ratio_of_means,
     solved_by_all,
 )
-from fuzzyq_bullet.studies.study import Sense, meets
+from fuzzyq_bullet.studies.study import Target
 
 LEARNED = "learned"
 """What rows call the planner that has learned."""
@@ -158,25 +158,6 @@ class AtCount:
     ours: int
     theirs: int
     time: Estimate | None
-
-
-@dataclass(frozen=True)
-class Target:
-    """What a figure should be; it is None where there was nothing to measure."""
-
-    what: str
-    figure: float | None
-    bound: float
-    sense: Sense
-
-    @property
-    def met(self) -> bool:
-        """Whether it is met; a gain that could not be measured is none."""
-        return self.figure is not None and meets(self.figure, self.sense, self.bound)
-
-    def __str__(self) -> str:
-        seen = "not measured" if self.figure is None else f"{self.figure:.4g}"
-        return f"{self.what} {seen}, wanted {self.sense} {self.bound:g}"
 
 
 @dataclass(frozen=True)
