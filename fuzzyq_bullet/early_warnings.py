@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from fuzzyq_bullet.metrics import has_way
+from fuzzyq_bullet.problems import Loc, Problem
 from fuzzyq_bullet.quantities import ANGLE_KEYS
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.files import problem_lines
-from fuzzyq_bullet.scenario.problems import Loc, Problem
 
 NO_WAY = "there is no way from the start to the goal for the robot, wherever it drives"
 

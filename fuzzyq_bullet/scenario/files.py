@@ -17,21 +17,15 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import field_policy
 from fuzzyq_bullet.planning.registry import make_planner
 from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.platforms import data_folder
+from fuzzyq_bullet.problems import Problem, lines_of
 from fuzzyq_bullet.quantities import MAX_OBSTACLES
 from fuzzyq_bullet.scenario.checks import find_conflicts
 from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import Scenario
-from fuzzyq_bullet.scenario.problems import (
-    MAX_SHOWN,
-    MAX_WORDED,
-    Loc,
-    Problem,
-    key_path,
-    problems_of,
-)
-from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
+from fuzzyq_bullet.scenario.problems import MAX_WORDED, problems_of
 from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
+from fuzzyq_bullet.yaml_tree import read_tree
 
 Source: TypeAlias = "str | os.PathLike[str]"
 
@@ -106,7 +100,7 @@ def parse_scenario(
             problems += [unfit] if unfit else []
         if not problems:
             return scenario
-    raise UserError(*_lines(problems, more, tree, where))
+    raise UserError(*lines_of(problems, more, tree, where))
 
 
 def _refuse_unwritable(scenario: Scenario, where: str) -> None:
@@ -230,7 +224,7 @@ def problem_lines(source: Source, problems: list[Problem]) -> list[str]:
     if not problems:
         return []
     path = find_scenario(source)
-    return _lines(problems, 0, read_tree(_read(path), str(path)), str(path))
+    return lines_of(problems, 0, read_tree(_read(path), str(path)), str(path))
 
 
 def _read(path: Path) -> str:
@@ -240,40 +234,6 @@ def _read(path: Path) -> str:
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise UserError(f"{path}:{line}: is not UTF-8 text") from error
-
-
-def _lines(problems: list[Problem], more: int, tree: Node, where: str) -> list[str]:
-    """Return the printed lines of the problems, in the order of the file's lines.
-
-    ``more`` is the number of problems beside those given.
-    """
-    told = []
-    for problem in problems:
-        line, shown = _locate(problem, tree)
-        told.append((line, f"{where}:{line}: {key_path(shown)}: {problem.message}"))
-    told.sort(key=lambda entry: entry[0])
-    lines = [text for _, text in told[:MAX_SHOWN]]
-    more += max(0, len(told) - MAX_SHOWN)
-    if more:
-        lines.append(f"{where}: and {more} more")
-    return lines
-
-
-def _locate(problem: Problem, tree: Node) -> tuple[int, Loc]:
-    """Return the line of a problem and its path in the file.
-
-    A key that is absent is shown behind the mapping that should hold it, on that one's line.
-    Parts that pydantic adds and the file does not have are passed over, unless it has none of them.
-    """
-    node, line, shown = tree, tree.line, ()  # type: Node, int, Loc
-    for i, part in enumerate(problem.loc):
-        if part in node.children:
-            line = node.line_of(part)
-            node = node.children[part]
-            shown += (part,)
-        elif problem.missing and i == len(problem.loc) - 1:
-            shown += (part,)
-    return line, shown or problem.loc
 
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
