@@ -17,6 +17,7 @@ from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner
+from fuzzyq_bullet.planning.controllers import fields_of
 from fuzzyq_bullet.planning.decision import DecisionError, checked
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.fields import refuse_other_field
@@ -140,6 +141,7 @@ class Episode:
         if (world.obstacles, world.arena) != (scenario.obstacles, scenario.arena):
             raise ValueError(f"the world was not built for the scenario {scenario.name}")
         self._scenario = scenario
+        self._fields = fields_of(scenario.planner)
         self._field = world.field
         self._driver = _driver(world, scenario, rate)
         self._decisions: list[tuple[int, Decision]] = []
@@ -204,7 +206,7 @@ class Episode:
         Returns:
             A trajectory; while the episode goes on, one that the time has run out for.
         """
-        decisions = [*self._decisions, (len(self._driver.ticks) - 1, checked(told))]
+        decisions = [*self._decisions, (len(self._driver.ticks) - 1, checked(told, self._fields))]
         return self._recorded(decisions, self.outcome or "timeout")
 
     def _recorded(self, decisions: list[tuple[int, Decision]], outcome: Outcome) -> Trajectory:
@@ -222,7 +224,7 @@ class Episode:
     def _note(self, decision: Decision) -> Decision:
         if self.outcome is not None:
             raise ValueError(f"the episode is over ({self.outcome}); begin another")
-        decision = checked(decision)
+        decision = checked(decision, self._fields)
         self._decisions.append((len(self._driver.ticks) - 1, decision))
         return decision
 

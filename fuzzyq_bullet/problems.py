@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+import typing
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from pydantic import BaseModel
+
+from fuzzyq_bullet.quantities import ModelRegistry
 from fuzzyq_bullet.wording import did_you_mean, shorten
 from fuzzyq_bullet.yaml_tree import Node
 
@@ -102,6 +106,38 @@ def problem_of(error: dict[str, Any], loc: Loc, keys: Sequence[str]) -> Problem:
         return Problem(loc, refusal(f"got {shorten(value)}", value, allowed))
     say = _WORDING.get(kind)
     return Problem(loc, say(value, context) if say else _plain(error["msg"]))
+
+
+def keys_at(
+    here: list[type[BaseModel]],
+    loc: Loc,
+    tags: Callable[[type[BaseModel]], tuple[Any, ...]] = lambda kind: (),
+) -> list[str]:
+    """Return the keys allowed in the mapping that ``loc`` leads to.
+
+    Args:
+        here: What the outermost mapping may be.
+        loc: The keys and indices.
+        tags: The values that choose a model among others, as pydantic puts them into places.
+    """
+    for part in loc:
+        inner = [
+            found
+            for kind in here
+            if isinstance(part, str) and part in kind.model_fields
+            for found in _models_in(kind.model_fields[part].annotation)
+        ]
+        tagged = [kind for kind in here if part in tags(kind)]
+        here = inner or tagged or here
+    fields = (one for kind in here for one in kind.model_fields.items())
+    return list(dict.fromkeys(field.alias or name for name, field in fields))
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for inner in typing.get_args(annotation):
+        yield from inner if isinstance(inner, ModelRegistry) else _models_in(inner)
 
 
 def refusal(what: str, word: Any, allowed: Sequence[str]) -> str:

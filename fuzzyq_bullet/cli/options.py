@@ -77,6 +77,15 @@ PlannerOption: TypeAlias = Annotated[
     str | None,
     typer.Option(help="Planner to use instead, with the same settings as far as it has them."),
 ]
+RulesOption: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="RULES",
+        help="Table 4 of the paper, corrected or printed; or a .yaml, .fll or .fis file of your "
+        "own (docs/rules.md).",
+        show_default="corrected",
+    ),
+]
 Json: TypeAlias = Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")]
 
 Jobs: TypeAlias = Annotated[

@@ -5,15 +5,22 @@ from __future__ import annotations
 import math
 import re
 import typing
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner_names, settings_for
-from fuzzyq_bullet.problems import MAX_SHOWN, Loc, Problem, is_short_list, problem_of, refusal
-from fuzzyq_bullet.quantities import ANGLE_KEYS, ModelRegistry
+from fuzzyq_bullet.problems import (
+    MAX_SHOWN,
+    Loc,
+    Problem,
+    is_short_list,
+    keys_at,
+    problem_of,
+    refusal,
+)
+from fuzzyq_bullet.quantities import ANGLE_KEYS
 from fuzzyq_bullet.robots import no_robot
 from fuzzyq_bullet.scenario.expectations import expect_model
 from fuzzyq_bullet.scenario.layouts import LAYOUTS
@@ -113,23 +120,7 @@ def _keys_at(loc: Loc, data: Any) -> list[str]:
         here, loc = [expect_model()], loc[1:]
     if loc[:1] == ("sensor",):
         here, loc = list(SENSORS), loc[1:]
-    for part in loc:
-        inner = [
-            found
-            for kind in here
-            if isinstance(part, str) and part in kind.model_fields
-            for found in _models_in(kind.model_fields[part].annotation)
-        ]
-        tagged = [kind for kind in here if part in _tags(kind)]
-        here = inner or tagged or here
-    return list(dict.fromkeys(key for kind in here for key in kind.model_fields))
-
-
-def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for inner in typing.get_args(annotation):
-        yield from inner if isinstance(inner, ModelRegistry) else _models_in(inner)
+    return keys_at(here, loc, _tags)
 
 
 def _tags(kind: type[BaseModel]) -> tuple[Any, ...]:
