@@ -84,12 +84,12 @@ def solids(
     ground: Floats, obstacles: Sequence[Floats], walls: Sequence[Floats], goal: Mesh
 ) -> list[Mesh]:
     """Return all meshes, the ground first."""
-    meshes = [_prisms([ground], -_DOWN, 0.0, style.GROUND)] if len(ground) >= 3 else []
+    meshes = [prisms([ground], -_DOWN, 0.0, style.GROUND)] if len(ground) >= 3 else []
     if walls:
-        meshes.append(_prisms(walls, -_DOWN, WALL_HEIGHT, style.WALL))
+        meshes.append(prisms(walls, -_DOWN, WALL_HEIGHT, style.WALL))
     for k in range(0, len(obstacles), _CHUNK):
         part = obstacles[k : k + _CHUNK]
-        meshes.append(_prisms(part, -_DOWN, OBSTACLE_HEIGHT, style.OBSTACLE))
+        meshes.append(prisms(part, -_DOWN, OBSTACLE_HEIGHT, style.OBSTACLE))
     return [*meshes, goal]
 
 
@@ -119,7 +119,7 @@ def _corners(obstacle: Shape, lens: Lens) -> int:
     return 2 * corners_for(obstacle.extent() * lens.pixels_per_radian() / distance)
 
 
-def _prisms(outlines: Iterable[Floats], bottom: float, top: float, colour: style.Colour) -> Mesh:
+def prisms(outlines: Iterable[Floats], bottom: float, top: float, colour: style.Colour) -> Mesh:
     """Return upright prisms over anticlockwise convex outlines as one mesh with flat faces."""
     vertices, normals, triangles = [], [], []
     base = 0
