@@ -36,8 +36,6 @@ KEYS = "space: pause   s: one decision   +/-: faster, slower   q: quit"
 _FRAME = 1.0 / 30.0
 _LONGEST_GAP = 0.25
 """Longest time (s) between two frames that is made up for."""
-_POST = 0.02
-_FAR = 1e3
 
 
 class Screen(Protocol):
@@ -86,19 +84,15 @@ def watch(scenario: Scenario, *, speed: float = 1.0, stay: bool = True) -> Traje
 
 def still_meshes(scenario: Scenario) -> list[Mesh]:
     """Return ground, walls, obstacles and the goal of a realised scenario, as they are filmed."""
-    everywhere = _FAR * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-    angles = np.linspace(0.0, math.tau, 32, endpoint=False)
-    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    goal = np.array(scenario.goal.position)
-    disc = goal + scenario.goal.radius * circle
+    everywhere = meshes.EVERYWHERE
     return [
         *meshes.solids(
             meshes.ground_of(scenario, everywhere),
             [obstacle.outline() for obstacle in scenario.obstacles],
             meshes.walls_of(scenario, everywhere),
-            meshes.prisms([disc], 0.0, 0.01, style.GOAL),
+            meshes.goal_disc(scenario),
         ),
-        meshes.prisms([goal + _POST * circle[::4]], 0.0, 1.0, style.GOAL),
+        meshes.pole(scenario.goal.position, 1.0),
     ]
 
 

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 _CHUNK = 400
 """Obstacles of one mesh: PyBullet holds at most 131072 corners a shape."""
+EVERYWHERE: Floats = 1e3 * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+"""A piece of ground (m) that holds every arena, for who can look at all of it."""
+_CIRCLE = np.stack([f(np.linspace(0.0, math.tau, 32, endpoint=False)) for f in (np.cos, np.sin)], 1)
 _DOWN = 0.05
 """Solids reach a little below the ground, so that no gap shows between the two (m)."""
 
@@ -111,6 +114,17 @@ def flag(position: tuple[float, float], lens: Lens, scale: float) -> Mesh:
     # Lit as if it lay flat, so that its colour is that of the goal on the map.
     normals = np.tile((0.0, 0.0, 1.0), (len(vertices), 1))
     return Mesh(np.array(vertices), normals, np.array(triangles), style.GOAL)
+
+
+def goal_disc(scenario: Scenario) -> Mesh:
+    """Return the goal as a thin disc on the ground."""
+    goal = scenario.goal
+    return prisms([np.add(goal.position, goal.radius * _CIRCLE)], 0.0, 0.01, style.GOAL)
+
+
+def pole(position: tuple[float, float], height: float) -> Mesh:
+    """Return a pole of the goal's colour, to be seen from everywhere; ``height`` is in metres."""
+    return prisms([np.add(position, 0.02 * _CIRCLE[::4])], 0.0, height, style.GOAL)
 
 
 def _corners(obstacle: Shape, lens: Lens) -> int:
