@@ -125,7 +125,8 @@ class Spectator:
         self._passed: list[tuple[float, float]] = []
         self._shown, self._looked = 0.0, clock()
         self._due = True
-        self._sentence, self._mode, self._since = "", "", -math.inf
+        self._why = self._said = ("", "")  # the mode and the sentence: of now, and shown
+        self._since = -math.inf
         self._lines: tuple[Line, ...] = ()
 
     def __call__(self, before: RobotState, decision: Decision, now: RobotState) -> None:
@@ -136,7 +137,8 @@ class Spectator:
         """
         self._last = now
         self._passed.append((before.x, before.y))
-        self._explain(before, decision)
+        self._lines = self._lines_of(before, decision)
+        self._why = decision.mode, reason(self._at_once(before, decision), 0)
         while True:
             if self._due:
                 if self._shown > now.time:
@@ -156,8 +158,8 @@ class Spectator:
             WindowClosed: When somebody does.
         """
         title, figures = outcome_lines(trajectory)
-        self._sentence = f"{title}   {figures}"
-        self._paused = False
+        self._why = self._why[0], f"{title}   {figures}"
+        self._since = -math.inf
         last = self._last
         while last is not None:
             self._wait()
@@ -179,6 +181,7 @@ class Spectator:
         turn = wrap_angle(now.heading - before.heading)
         scenario = self._scenario
         pace = "" if over else "paused   " if self._paused else f"{self._speed:g}x   "
+        mode, sentence = self._explained()
         keys = self._window.draw(
             (before.x + part * (now.x - before.x), before.y + part * (now.y - before.y)),
             before.heading + part * turn,
@@ -188,7 +191,7 @@ class Spectator:
                 f"{scenario.name}   {scenario.planner.name}   seed {scenario.seed}",
                 "q: close" if over else KEYS,
             ),
-            below=(f"{before.time + part * span:.1f} s   {pace}{self._mode}", self._sentence),
+            below=(f"{before.time + part * span:.1f} s   {pace}{mode}", sentence),
         )
         self._passed = []
         for key in keys:
@@ -206,13 +209,15 @@ class Spectator:
         elif key == SLOWER:
             self._speed = max((one for one in SPEEDS if one < self._speed), default=self._speed)
 
-    def _explain(self, before: RobotState, decision: Decision) -> None:
-        """Take in what a decision was made of, and why; a sentence stays long enough to be read."""
-        self._lines = self._lines_of(before, decision)
-        now = self._clock()
-        if decision.mode != self._mode or now - self._since >= HOLD:
-            self._mode, self._since = decision.mode, now
-            self._sentence = reason(self._at_once(before, decision), 0)
+    def _explained(self) -> tuple[str, str]:
+        """Return the mode and why the robot heads where it does, each for long enough to be read.
+
+        In a pause, and of another mode, it is told at once.
+        """
+        at_once = self._paused or self._why[0] != self._said[0]
+        if self._why != self._said and (at_once or self._looked - self._since >= HOLD):
+            self._said, self._since = self._why, self._looked
+        return self._said
 
     def _lines_of(self, before: RobotState, decision: Decision) -> tuple[Line, ...]:
         """Return the detection lines, as far as the front of the robot could go along each."""

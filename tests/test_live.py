@@ -14,11 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fuzzyq_bullet import Trajectory, load_scenario, run, with_options
+from fuzzyq_bullet import Trajectory, UserError, load_scenario, run, with_options
 from fuzzyq_bullet.live import KEYS, Spectator
 from fuzzyq_bullet.physics.window import Line, WindowClosed
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.video import style
+from fuzzyq_bullet.video.explanation import reason
 from tests.helpers.commands import FUZZYQ, Call
 from tests.helpers.screen import Screen, needs_screen, screen
 
@@ -151,6 +152,23 @@ def test_the_captions_say_what_is_seen_and_why(scenario: Scenario) -> None:
     assert "the goal" in first[3]
 
 
+def test_a_sentence_stays_long_enough_to_be_read_and_in_a_pause_is_that_of_the_lines() -> None:
+    scenario = load_scenario("boxes")
+    window = Recorder()
+    watched = window.watch(scenario, 2.0)
+    said = [(texts[2].split()[-1], texts[3]) for texts in window.texts]
+    changes = [k for k in range(1, len(said)) if said[k] != said[k - 1]]
+    assert len(changes) > 3
+    for a, b in pairwise(changes):
+        assert said[b][0] != said[b - 1][0] or (b - a) * FRAME >= 0.5 - 1e-9
+    steps = iter("s" * 40 + "q")
+    window = Recorder(lambda frame: next(steps))
+    with pytest.raises(WindowClosed):
+        window.watch(scenario, 2.0)
+    for k, texts in enumerate(window.texts[2:]):
+        assert texts[3] == reason(watched, k + 2)
+
+
 def test_the_space_bar_pauses_and_lets_it_go_on(scenario: Scenario, alone: Trajectory) -> None:
     keys = {10: " ", 100: " "}
     window = Recorder(lambda frame: keys.get(frame, ""))
@@ -216,7 +234,7 @@ def test_at_the_end_it_stays_and_says_how_it_ended(scenario: Scenario) -> None:
 
 
 def test_without_a_screen_one_line_says_what_to_use_instead(
-    fuzzyq: Call, short: Path, monkeypatch: pytest.MonkeyPatch
+    fuzzyq: Call, inside: Call, short: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("DISPLAY", raising=False)
     done = fuzzyq("watch", short)
@@ -226,9 +244,8 @@ def test_without_a_screen_one_line_says_what_to_use_instead(
         "`fuzzyq run` needs no screen\n"
     )
     monkeypatch.setenv("DISPLAY", ":64999")
-    done = fuzzyq("watch", short)
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert "there is no X server at DISPLAY=:64999; `fuzzyq run`" in done.stderr
+    with pytest.raises(UserError, match=r"there is no X server at DISPLAY=:64999; `fuzzyq run`"):
+        inside("watch", short)
 
 
 @pytest.fixture(scope="module")
