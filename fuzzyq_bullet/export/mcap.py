@@ -41,7 +41,7 @@ def mcap_of(trajectory: Trajectory) -> bytes:
     """Return a record as an MCAP file; docs/record.md lists its topics."""
     file, context = io.BytesIO(), Context()
     # In one thread it is compressed to the same bytes each time.
-    options = MCAPWriteOptions(profile="", compression_threads=0)
+    options = MCAPWriteOptions(compression_threads=0)
     with open_mcap(file, context=context, writer_options=options) as writer:
         writer.write_metadata("fuzzyq_bullet", _about(trajectory))
         _log_all(trajectory, context)
