@@ -321,7 +321,8 @@ def test_the_window_shows_robot_goal_obstacles_and_lines_in_their_colours(
 @needs_screen
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("xdotool") is None, reason="needs the program xdotool")
-def test_a_key_that_a_person_presses_arrives(short: Path, shown: Screen) -> None:
+@pytest.mark.parametrize("key", ["q", "Escape"])
+def test_a_key_that_a_person_presses_arrives(key: str, short: Path, shown: Screen) -> None:
     def tool(*words: str) -> str:
         command = ["xdotool", *words]
         done = subprocess.run(command, env=shown.environment, capture_output=True, text=True)
@@ -337,7 +338,7 @@ def test_a_key_that_a_person_presses_arrives(short: Path, shown: Screen) -> None
     try:
         until(lambda: shown.shows(style.LINES[0]) > 50, process)
         tool("windowfocus", tool("search", "--name", "Bullet").split()[-1])
-        tool("key", "--delay", "80", "q")
+        tool("key", "--delay", "80", key)
         out, said = process.communicate(timeout=60)
     finally:
         process.kill()
