@@ -65,7 +65,7 @@ PluginOption: TypeAlias = Annotated[
 ]
 SpeedOption: TypeAlias = Annotated[
     float,
-    typer.Option(help="Playback speed of the video; 1 is real time.", callback=_check_speed),
+    typer.Option(help="Playback speed; 1 is real time.", callback=_check_speed),
 ]
 ReplaceOption: TypeAlias = Annotated[
     bool, typer.Option("--replace", help="Replace files of another run of that name.")
