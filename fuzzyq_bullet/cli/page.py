@@ -28,7 +28,7 @@ def page(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Folder to write into; by default that of the (first) record, or out for a lesson.",
+            help="Folder to write into; by default that of the first record; out for a lesson.",
             **FOLDER,
         ),
     ] = None,

@@ -1,4 +1,4 @@
-"""The interactive page: one HTML file in which a record plays, and its controller can be changed."""
+"""The interactive page: one HTML file that plays a record and lets its controller be changed."""
 
 from fuzzyq_bullet.page.document import MARK, lesson_page, record_page
 

@@ -1,8 +1,8 @@
 """One HTML file out of its parts: template, style, modules of JavaScript, and data.
 
-The modules in ``js/`` are plain ES modules. A page opened from disk cannot load others, so they are put
-one after the other into one script: each becomes a function that is called at once and returns what
-the module exports.
+The modules in ``js/`` are plain ES modules. A page opened from disk cannot load others, so they are
+put one after the other into one script: each becomes a function that is called at once and returns
+what the module exports.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ MARK = "fuzzyq page"
 
 MODULES = (
     "sets", "inference", "dom", "colours", "timeline", "arrows", "field", "plot", "rule_table",
-    "surface", "senses", "judges", "rules", "acts", "run_view", "legend", "player", "what_if", "keys",
-    "main",
+    "surface", "senses", "judges", "rules", "acts", "run_view", "legend", "player", "what_if",
+    "keys", "main",
 )  # fmt: skip
 """The modules of the page in an order in which each stands behind those that it imports."""
 

@@ -5,7 +5,7 @@ import { Controller } from "./inference.js";
 import { helpDialog, listen } from "./keys.js";
 import { legend } from "./legend.js";
 import { Player } from "./player.js";
-import { details, RunView } from "./run_view.js";
+import { conditions, RunView } from "./run_view.js";
 import { Run } from "./timeline.js";
 import { WhatIf } from "./what_if.js";
 
@@ -24,7 +24,7 @@ function start() {
   const whatIf = controller ? new WhatIf(controller, standard(data, runs[followed]), pupils.map(nameOf)) : null;
   if (runs.length === 1) {
     const [{ data: run }] = runs;
-    document.querySelector("h1").replaceChildren(run.planner, html("span", {}, details(run)));
+    document.querySelector("h1").append(html("span", {}, `planner ${run.planner}, ${conditions(run)}`));
   }
   if (runs.length) {
     player = new Player(runs, (time, playing) => {

@@ -136,13 +136,14 @@ export class Plot {
     }
   }
 
+  /** Return the set that a value belongs to most, in words, and the next one by its label. */
   described(degrees) {
     return this.variable.sets
-      .map((one, k) => [degrees[k] ?? 0, one.words])
+      .map((one, k) => [degrees[k] ?? 0, one])
       .filter(([degree]) => degree >= COUNTS)
       .sort((a, b) => b[0] - a[0])
       .slice(0, this.changed ? 2 : 1)
-      .map(([degree, words]) => `${words} ${fixed(degree)}`)
+      .map(([degree, { words, label }], k) => `${k ? label : words} ${fixed(degree)}`)
       .join(", ");
   }
 

@@ -23,7 +23,7 @@ export class RunView {
     this.element = html(
       "article",
       { class: "run" },
-      html("h2", {}, html("b", {}, planner), html("span", {}, details(run.data))),
+      html("h2", {}, html("b", {}, planner), html("span", {}, `${run.data.name}, ${conditions(run.data)}`)),
       html("p", { class: "story", "aria-live": "off" }, this.mode, this.sentence),
       this.field.element,
       html("div", { class: "cards" }, ...cards.map((card) => card.element)),
@@ -52,7 +52,7 @@ export class RunView {
   }
 }
 
-/** Return which run this is, beside its planner. */
-export function details({ name, seed, drive }) {
-  return `${name}, seed ${seed}${drive === "kinematic" ? ", kinematic drive" : ""}`;
+/** Return the seed of a run, and the drive if it is not that of wheels. */
+export function conditions({ seed, drive }) {
+  return `seed ${seed}${drive === "kinematic" ? ", kinematic drive" : ""}`;
 }

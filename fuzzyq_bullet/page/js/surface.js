@@ -107,8 +107,9 @@ export class Surface {
     pen.lineTo(this.width, y);
     pen.stroke();
     pen.globalAlpha = 1;
+    const inside = (at, size) => Math.min(Math.max(at, 9), size - 9);
     pen.beginPath();
-    pen.arc(x, y, 7, 0, 2 * Math.PI);
+    pen.arc(inside(x, this.width), inside(y, this.height), 7, 0, 2 * Math.PI);
     pen.fillStyle = colours().robot;
     pen.fill();
     pen.lineWidth = 2.5;
