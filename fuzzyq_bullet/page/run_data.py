@@ -45,6 +45,7 @@ def run_data(trajectory: Trajectory) -> dict[str, Any]:
         "planner": planner_name(trajectory),
         "drive": scenario.drive,
         "seed": scenario.seed,
+        "has_modes": bool(trajectory.decisions.mode.any() or has_rules(trajectory.decisions)),
         "outcome": trajectory.outcome,
         "end": {"title": title, "figures": figures},
         "field": _field(trajectory),

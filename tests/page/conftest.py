@@ -62,6 +62,8 @@ def show(browser: Browser, pages: dict[str, Path]) -> Iterator[Open]:
 
     def opened(name: str, width: int = 1280, *, dark: bool = False) -> Browser:
         browser.open(pages[name], width=width, dark=dark)
+        # What depends on sizes is drawn with the first frame.
+        browser.value("new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
         return browser
 
     yield opened

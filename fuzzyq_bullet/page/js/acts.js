@@ -4,6 +4,11 @@ import { fixed, html, say, set, svg, turning, weight } from "./dom.js";
 
 const CENTRE = [90, 84];
 const RADIUS = 66;
+const MEANINGS = {
+  w1: "weight in force of the step",
+  w2: "weight in force of the turn",
+  c_f: "with less than this free towards the goal, the robot breaks out",
+};
 
 /** A dial: up is the aim, the needle where the robot heads. */
 export class Dial {
@@ -40,9 +45,12 @@ export class Acts {
     this.turn = html("b");
     this.aim = html("span");
     this.facts = {};
-    const fact = (name, text) => {
+    const { weights, breakout_at: limits } = run.decisions;
+    const weighted = weights.some(([w1]) => w1 !== null);
+    const fact = (name, text, told = true) => {
+      if (!told) return null;
       this.facts[name] = html("dd");
-      return html("div", {}, html("dt", {}, text), this.facts[name]);
+      return html("div", { title: MEANINGS[name] ?? null }, html("dt", {}, text), this.facts[name]);
     };
     this.element = html(
       "section",
@@ -55,9 +63,9 @@ export class Acts {
         fact("step", "step"),
         fact("speed", "speed"),
         fact("clearance", "nearest"),
-        fact("w1", "ω1 · step"),
-        fact("w2", "ω2 · turn"),
-        fact("c_f", "c_f · breakout"),
+        fact("w1", "ω1 · step", weighted),
+        fact("w2", "ω2 · turn", weighted),
+        fact("c_f", "c_f", limits.some(Number.isFinite)),
       ),
     );
   }
@@ -71,8 +79,9 @@ export class Acts {
     say(this.turn, turning(decision.off_aim));
     say(this.aim, ` ${Math.abs(decision.off_aim) < 0.0087 ? "to" : "of"} ${decision.aims_at}`);
     say(this.facts.step, `${fixed(decision.step)} m`);
-    say(this.facts.w1, weight(decision.weights[0]));
-    say(this.facts.w2, weight(decision.weights[1]));
-    say(this.facts.c_f, decision.breakout_at === null ? "–" : `${weight(decision.breakout_at)} S_p`);
+    const { w1, w2, c_f: limit } = this.facts;
+    if (w1) say(w1, weight(decision.weights[0]));
+    if (w2) say(w2, weight(decision.weights[1]));
+    if (limit) say(limit, `${weight(decision.breakout_at)} S_p`);
   }
 }

@@ -123,7 +123,7 @@ export class Field {
     pen.fill();
     pen.globalAlpha = 1;
     const upwards = goal.position[1] >= start[1]; // each label on the side away from the other
-    this.label(pen, "goal", there, goalRadius, upwards);
+    this.label(pen, "goal", there, Math.max(goalRadius, 14 * this.marks), upwards);
     pen.strokeStyle = colour.muted;
     pen.lineWidth = 2;
     const here = this.at(...start);

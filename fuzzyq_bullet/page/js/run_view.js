@@ -45,7 +45,7 @@ export class RunView {
     const mode = decision?.mode ?? "routine";
     this.mode.className = `mode ${moment.over ? run.data.outcome : mode}`;
     const { title, figures } = run.data.end;
-    say(this.mode, moment.over ? "end" : mode);
+    say(this.mode, moment.over ? "end" : run.data.has_modes ? mode : run.data.planner);
     const ended = `${title} (${figures.replace(/ {3}/g, ", ")})`;
     const sentence = moment.over ? ended : decision?.sentence ?? run.data.waiting;
     say(this.sentence, sentence.replaceAll(" m", "\u00a0m"));

@@ -50,6 +50,7 @@ export class Senses {
     const turned = decision.lines[1] - decision.facing;
     const degrees = (turned * 180) / Math.PI - 90;
     set(this.nose, { transform: `translate(${ROBOT[0]} ${ROBOT[1]}) rotate(${degrees.toFixed(1)})` });
-    say(this.facts, `d = ${fixed(decision.distance)}, Df = ${fixed(decision.difference)} (in robot radii)`);
+    const told = decision.distance !== null;
+    say(this.facts, !told ? "" : `d = ${fixed(decision.distance)}, Df = ${fixed(decision.difference)} (in robot radii)`);
   }
 }
