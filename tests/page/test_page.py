@@ -260,11 +260,11 @@ def test_arrows_go_from_decision_to_decision(show: Open, drive: Trajectory) -> N
 def test_a_key_shows_the_keys_and_another_closes_them(show: Open) -> None:
     browser = show("one")
     browser.press("?")
-    assert browser.value("document.querySelector('dialog').open")
+    assert browser.value("document.querySelector('dialog.help').open")
     browser.press("ArrowRight")
     assert browser.value(TIME) == 0  # the run is behind the dialog
-    browser.value("document.querySelector('dialog button').click()")
-    assert not browser.value("document.querySelector('dialog').open")
+    browser.value("document.querySelector('dialog.help button').click()")
+    assert not browser.value("document.querySelector('dialog.help').open")
 
 
 def test_light_and_dark_as_the_system_says_and_as_the_button_says(show: Open) -> None:
@@ -371,6 +371,26 @@ def test_a_chosen_set_is_reshaped_by_its_square_handles_and_by_keys(show: Open) 
     browser.press("ArrowRight")
     browser.press("ArrowRight")  # the focus stays
     assert browser.value(NUMBERS) == pytest.approx([1.59, width])
+
+
+@pytest.mark.slow
+def test_a_rule_is_changed_in_its_cell(show: Open) -> None:
+    browser = show("lesson")
+    browser.value("fuzzyq.whatIf.setInputs(1.49, -2.22)")  # near, and the right is freer
+    assert "to the right" in said(browser, ".answer")
+    surface = browser.value(SURFACE)
+    browser.drag(middle(browser, "tr:nth-child(2) td:nth-of-type(4) button"))
+    assert said(browser, "dialog.rule p") == ("If ahead is near, and the sides are right freer:")
+    browser.value("document.querySelector('dialog.rule select').focus()")
+    for _ in range(3):
+        browser.press("ArrowDown")  # from NS over ZO and PS to PL
+    browser.value("document.querySelector('dialog.rule').close()")
+    assert said(browser, "tr:nth-child(2) td:nth-of-type(4) small") == "PL L"
+    assert "to the left" in said(browser, ".answer")
+    wait_until(browser, "!fuzzyq.whatIf.waiting")
+    assert browser.value(SURFACE) != surface
+    browser.drag(middle(browser, ".reset"))
+    assert browser.value(SURFACE) == surface
 
 
 @pytest.mark.slow

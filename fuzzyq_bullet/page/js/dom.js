@@ -61,12 +61,14 @@ export function whenSized(element, draw) {
   }).observe(element);
 }
 
-/** Make the pixels of a canvas as fine as the screen's; return its context, in CSS pixels. */
+/** Empty a canvas, its pixels as fine as the screen's; return its context, in CSS pixels. */
 export function sharp(canvas, width, height) {
   const ratio = window.devicePixelRatio || 1;
-  canvas.width = Math.round(width * ratio);
-  canvas.height = Math.round(height * ratio);
+  const [across, down] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== across) canvas.width = across;
+  if (canvas.height !== down) canvas.height = down;
   const context = canvas.getContext("2d");
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
   return context;
 }

@@ -11,10 +11,12 @@ export class RuleTable {
    * the left.
    *
    * @param controller Whose rules.
-   * @param options `labelled`, to write the labels of turn and step in each cell.
+   * @param options `changed()`, called after a rule was changed: with it each cell says the labels
+   *   of its turn and step, and is a button that lets others be chosen.
    */
-  constructor(controller, { labelled = false } = {}) {
+  constructor(controller, { changed = null } = {}) {
     this.controller = controller;
+    this.changed = changed;
     const { distance, difference } = controller;
     this.columns = difference.sets.map((_, j) => j).reverse();
     this.cells = distance.sets.map(() => []);
@@ -25,33 +27,63 @@ export class RuleTable {
       ...this.columns.map((j) => header(difference.sets[j], "col")),
     );
     const rows = distance.sets.map((one, i) =>
-      html("tr", {}, header(one, "row"), ...this.columns.map((j) => this.cell(i, j, labelled))),
+      html("tr", {}, header(one, "row"), ...this.columns.map((j) => this.cell(i, j))),
     );
-    const table = html("table", { class: labelled ? "rules labelled" : "rules" },
+    const table = html("table", { class: changed ? "rules labelled" : "rules" },
       html("thead", {}, head), html("tbody", {}, ...rows));
     const ends = html("div", { class: "ends" }, html("span", {}, "left freer"), html("span", {}, "right freer"));
-    this.element = html("div", { class: "rules-box" }, ends, table);
+    this.dialog = changed && html("dialog", { class: "rule" });
+    this.element = html("div", { class: "rules-box" }, ends, table, this.dialog);
   }
 
-  cell(i, j, labelled) {
-    const { outputs, distance, difference, cells } = this.controller;
-    const [turn, step] = outputs.map((output, k) => output.sets[cells[i][j][k]]);
+  cell(i, j) {
     const arrow = svg("path", { class: "arrow" });
-    const labels = labelled ? html("small", {}, `${turn.label} ${step.label}`) : null;
+    const labels = html("small");
     const strength = html("span", { class: "strength" });
     const lit = html("span", { class: "lit" });
-    const element = html(
-      "td",
-      {
-        title: `If ahead is ${distance.sets[i].words} and the sides are ${difference.sets[j].words}: turn ${turn.words}, step ${step.words}`,
-      },
-      lit,
-      svg("svg", { viewBox: `0 0 ${CELL} ${CELL}`, "aria-hidden": "true" }, arrow),
-      labels,
-      strength,
-    );
-    this.cells[i][j] = { element, arrow, strength, lit };
+    const picture = svg("svg", { viewBox: `0 0 ${CELL} ${CELL}`, "aria-hidden": "true" }, arrow);
+    const edit = { type: "button", class: "rule", onclick: () => this.edit(i, j) };
+    const content = this.changed ? html("button", edit, picture, labels, strength) : picture;
+    const element = html("td", {}, lit, content);
+    this.cells[i][j] = { element, arrow, labels, strength, lit };
     return element;
+  }
+
+  /** Return the turn and the step that a rule names. */
+  concludes(i, j) {
+    const { outputs, cells } = this.controller;
+    return outputs.map((output, k) => output.sets[cells[i][j][k]]);
+  }
+
+  condition(i, j) {
+    const { distance, difference } = this.controller;
+    return `If ahead is ${distance.sets[i].words}, and the sides are ${difference.sets[j].words}:`;
+  }
+
+  /** Ask for another turn and step of a rule. */
+  edit(i, j) {
+    const { outputs, cells } = this.controller;
+    const chosen = outputs.map((output, k) =>
+      html(
+        "select",
+        {
+          onchange: (event) => {
+            cells[i][j][k] = Number(event.target.value);
+            this.changed();
+          },
+        },
+        ...output.sets.map((one, number) =>
+          html("option", { value: number, selected: number === cells[i][j][k] ? "" : null },
+            `${one.label}: ${one.words}`)),
+      ),
+    );
+    this.dialog.replaceChildren(
+      html("p", {}, this.condition(i, j)),
+      html("label", {}, "turn", chosen[0]),
+      html("label", {}, "step", chosen[1]),
+      html("form", { method: "dialog" }, html("button", {}, "Close")),
+    );
+    this.dialog.showModal();
   }
 
   /**
@@ -60,13 +92,16 @@ export class RuleTable {
    * `weights(i, j)` returns ω1 and ω2 of a rule; `unit` is A_p (rad).
    */
   point(weights, unit) {
-    const { turn, step, cells } = this.controller;
-    cells.forEach((row, i) =>
-      row.forEach(([t, s], j) => {
+    const longest = this.controller.step.high;
+    this.cells.forEach((row, i) =>
+      row.forEach(({ element, arrow, labels }, j) => {
+        const [turn, step] = this.concludes(i, j);
         const [w1, w2] = weights(i, j);
-        const angle = Math.min(Math.max(turn.sets[t].centre * unit * w2, -3), 3);
-        const part = Math.min(Math.max((step.sets[s].centre / step.high) * w1, 0), 1);
-        set(this.cells[i][j].arrow, { d: arrowPath(CELL / 2, CELL / 2, angle, 13 + 21 * part) });
+        const angle = Math.min(Math.max(turn.centre * unit * w2, -3), 3);
+        const part = Math.min(Math.max((step.centre / longest) * w1, 0), 1);
+        set(arrow, { d: arrowPath(CELL / 2, CELL / 2, angle, 13 + 21 * part) });
+        say(labels, `${turn.label} ${step.label}`);
+        set(element, { title: `${this.condition(i, j)} turn ${turn.words}, step ${step.words}` });
       }),
     );
   }

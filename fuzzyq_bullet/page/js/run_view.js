@@ -35,12 +35,14 @@ export class RunView {
     const { run } = this;
     const moment = run.at(time);
     const decision = run.decision(playing ? run.heldAt(time) : run.decisionAt(time));
+    if (this.decision === undefined || decision?.index !== this.decision?.index) {
+      this.senses.show(decision);
+      this.judges?.show(decision);
+      this.rules?.show(decision);
+    }
     this.moment = moment;
     this.decision = decision;
     this.field.show(moment, decision);
-    this.senses.show(decision);
-    this.judges?.show(decision);
-    this.rules?.show(decision);
     this.acts.show(moment, decision);
     const mode = decision?.mode ?? "routine";
     this.mode.className = `mode ${moment.over ? run.data.outcome : mode}`;

@@ -44,7 +44,7 @@ export class WhatIf {
     this.side = new Plot(difference, { title: "Df: left less right", mirrored: true, changed });
     this.turned = new Plot(turn, { title: "turn N_a", mirrored: true, changed });
     this.stepped = new Plot(step, { title: "step N_s", changed });
-    this.table = new RuleTable(this.controller, { labelled: true });
+    this.table = new RuleTable(this.controller, { changed });
     const picked = (d, df) => this.setInputs(d, df);
     this.surfaces = [
       new Surface(this.controller, { title: "turn, for every d and Df", output: "turn", picked }),
@@ -64,7 +64,8 @@ export class WhatIf {
         "p",
         { class: "hint" },
         "Move d and Df with the sliders, or press on a surface. Drag the round handles to move a set; ",
-        "press on a set to reshape it by its square handles. Rules and surfaces follow at once.",
+        "press on a set to reshape it by its square handles. Press on a rule to change what it says. ",
+        "Rules and surfaces follow at once.",
       ),
       html("div", { class: "verdict" }, this.dial.element, html("div", {}, this.answer, this.before)),
       html(
@@ -117,6 +118,7 @@ export class WhatIf {
   /** Take d, Df and the weights from a run from now on; −1: from the sliders. */
   follow(number) {
     this.follows = number;
+    this.taken = null;
     if (this.select) this.select.value = String(number);
     if (number >= 0 && this.decisions) this.take(this.decisions);
   }
@@ -125,6 +127,9 @@ export class WhatIf {
   take(decisions) {
     this.decisions = decisions;
     const decision = this.follows < 0 ? null : decisions[this.follows];
+    const taken = `${this.follows} ${decision?.index}`;
+    if (taken === this.taken) return;
+    this.taken = taken;
     if (!decision || decision.distance === null || decision.difference === null) return;
     this.d = decision.distance;
     this.df = decision.difference;
