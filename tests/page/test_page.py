@@ -231,6 +231,13 @@ def test_a_press_on_the_path_goes_to_when_the_robot_was_there(
           return [box.x + x, box.y + y];
         }})()"""
     )
+    steps = browser.value(
+        """((field) => [[1, 0], [0, 1]].map(([x, y]) => {
+          const [from, to] = [field.at(2, 3), field.at(2 + x, 3 + y)];
+          return [(to[0] - from[0]) / field.scale, (to[1] - from[1]) / field.scale];
+        }))(fuzzyq.views[0].field)"""
+    )
+    np.testing.assert_allclose(steps, [[1, 0], [0, -1]], atol=1e-9)  # x to the right, y up
     browser.drag(tuple(place))
     moment = browser.value("fuzzyq.views[0].moment")
     assert (moment["x"], moment["y"]) == pytest.approx((x, y), abs=0.05)

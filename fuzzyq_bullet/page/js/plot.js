@@ -85,8 +85,9 @@ export class Plot {
           ? `M${this.x(one.centre)} ${this.y(0)}V${this.y(1)}`
           : this.path(xs, (x) => one.membership(x));
       set(this.parts.curves[k], { d: curve });
-      const closed = `${curve}V${this.y(0)}H${this.x(low)}Z`;
-      set(this.parts.areas[k], { d: one.shape === "singleton" ? "" : closed });
+      if (one.shape !== "singleton") {
+        set(this.parts.areas[k], { d: `${curve}V${this.y(0)}H${this.x(low)}Z` });
+      }
       const at = Math.min(Math.max(this.x(one.centre), MARGIN + 8), this.width - MARGIN - 8);
       set(this.parts.labels[k], { x: at, y: this.height - 4 });
     });
@@ -116,7 +117,10 @@ export class Plot {
     if (!this.width) return;
     sets.forEach((one, k) => {
       const degree = value === null ? 0 : degrees[k] ?? 0;
-      this.parts.areas[k].style.opacity = aggregate ? 0 : 0.7 * degree;
+      const stick = one.shape === "singleton"; // no area: it is as high as its rules fire
+      if (stick) set(this.parts.areas[k], { d: `M${this.x(one.centre)} ${this.y(0)}V${this.y(degree)}` });
+      this.parts.areas[k].classList.toggle("stick", stick);
+      this.parts.areas[k].style.opacity = stick ? 1 : aggregate ? 0 : 0.7 * degree;
       this.parts.curves[k].style.opacity = 0.45 + 0.55 * degree;
       this.parts.labels[k].classList.toggle("strongest", k === strongest && degree > COUNTS);
       const dotted = aggregate === null && value !== null && degree > COUNTS;

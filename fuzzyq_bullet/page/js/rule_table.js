@@ -7,8 +7,8 @@ const COUNTS = 0.05;
 
 export class RuleTable {
   /**
-   * Columns run from the greatest difference to the least, so that rules for "left freer" stand on
-   * the left.
+   * Rows run from near to far. Columns run from the greatest difference to the least, so that rules
+   * for "left freer" stand on the left.
    *
    * @param controller Whose rules.
    * @param options `changed()`, called after a rule was changed: with it each cell says the labels
@@ -18,7 +18,8 @@ export class RuleTable {
     this.controller = controller;
     this.changed = changed;
     const { distance, difference } = controller;
-    this.columns = difference.sets.map((_, j) => j).reverse();
+    const rising = (sets) => [...sets.keys()].sort((a, b) => sets[a].centre - sets[b].centre);
+    this.columns = rising(difference.sets).reverse();
     this.cells = distance.sets.map(() => []);
     const head = html(
       "tr",
@@ -26,8 +27,8 @@ export class RuleTable {
       html("th", { scope: "col", class: "corner" }, "ahead"),
       ...this.columns.map((j) => header(difference.sets[j], "col")),
     );
-    const rows = distance.sets.map((one, i) =>
-      html("tr", {}, header(one, "row"), ...this.columns.map((j) => this.cell(i, j))),
+    const rows = rising(distance.sets).map((i) =>
+      html("tr", {}, header(distance.sets[i], "row"), ...this.columns.map((j) => this.cell(i, j))),
     );
     const table = html("table", { class: changed ? "rules labelled" : "rules" },
       html("thead", {}, head), html("tbody", {}, ...rows));
@@ -116,6 +117,7 @@ export class RuleTable {
         const { element, strength: number, lit } = this.cells[i][j];
         // The root lifts weak rules into sight; the order of brightness stays.
         lit.style.opacity = Math.sqrt(strength).toFixed(3);
+        element.classList.toggle("fires", strength >= COUNTS);
         element.classList.toggle("bright", strength > 0.25 && asked);
         element.classList.toggle("strongest", strength === strongest && strength > COUNTS && asked);
         say(number, strength >= COUNTS ? fixed(strength) : "");

@@ -92,7 +92,7 @@ export const SHAPES = {
 export class FuzzySet {
   constructor(label, data) {
     this.label = label;
-    this.words = data.words || label;
+    this.words = data.meaning || data.words || label; // what it means to a robot, if that is told
     this.shape = Object.keys(SHAPES).find((name) => name in data);
     this.numbers = [].concat(data[this.shape]);
   }
