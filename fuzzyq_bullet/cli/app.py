@@ -13,6 +13,7 @@ from fuzzyq_bullet.cli import (
     check,
     explain,
     export,
+    page,
     report,
     run,
     scenarios,
@@ -42,6 +43,7 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 _add("run", run.run)
 _add("replay", run.replay)
 _add("watch", watch.watch)
+_add("page", page.page)
 _add("export", export.export)
 _add("check", check.check)
 _add("import", scenarios.import_map)
