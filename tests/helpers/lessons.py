@@ -25,7 +25,7 @@ LESSONS = sorted(FOLDER.glob("[0-9]*.md"))
 
 SOLUTION = re.compile(
     r"<details>\n<summary>[^\n]+</summary>\n\n```python\n(?P<code>.*?)```\n\n"
-    r"It prints:\n\n```text\n(?P<prints>.*?)```\n\n</details>",
+    r"It prints:\n\n```text\n(?P<prints>.*?)```\n\n(?:[^<]+\n\n)?</details>",
     re.DOTALL,
 )
 
