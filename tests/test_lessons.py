@@ -74,10 +74,24 @@ def lines_tell_where_to_turn(names: Names) -> None:
     assert names["trajectory"].outcome == "goal"
     left, middle, right = decisions.lengths[names["number_at"](5.0)]
     assert middle < left < right
-    slow = (ticks.time > 30.0) & (ticks.time < 50.0)
+    slow = (ticks.time > 30.0) & (ticks.time < 49.0)
     assert ticks.clearance[slow].min() == ticks.clearance.min()
     assert ticks.speed[slow].max() < ticks.speed[~slow & (ticks.time > 1.0)].mean()
     assert np.array_equal(decisions.lengths[names["number_at"](1.0)], [1.0, 1.0, 1.0])
+
+
+def one_number_makes_it_hit_the_pillar(names: Names) -> None:
+    assert (names["before"].outcome, names["after"].outcome) == ("goal", "collision")
+    medium = names["distance"].memberships(2.49)[2]
+    assert medium == 1.0
+
+
+def rules_are_a_surface(names: Names) -> None:
+    runs = [names[name].outcome for name in ("right", "wrong", "printed")]
+    assert runs == ["goal", "collision", "collision"]
+    turn = names["inference"].turn
+    assert turn < 0.0  # to the right
+    assert names["centroid"] == pytest.approx(turn, abs=1e-6)
 
 
 def a_trap_holds_the_robot(names: Names) -> None:
@@ -131,6 +145,8 @@ def the_best_fixed_weights_are_as_good(names: Names) -> None:
 
 CLAIMS: dict[str, Callable[[Names], None]] = {
     "1": lines_tell_where_to_turn,
+    "2": one_number_makes_it_hit_the_pillar,
+    "3": rules_are_a_surface,
     "4": a_trap_holds_the_robot,
     "5": memory_leads_out,
     "6": the_cliff_is_learned,
