@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     )
     from fuzzyq_bullet.scenario import Scenario, load_scenario, with_options
     from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video.record import frame, record
 
 __all__ = [
     "Decision",
@@ -39,7 +40,9 @@ __all__ = [
     "Trajectory",
     "UserError",
     "__version__",
+    "frame",
     "load_scenario",
+    "record",
     "register_planner",
     "result_of",
     "run",
@@ -55,7 +58,9 @@ _HOMES = {
     "Scenario": "scenario",
     "Trajectory": "trajectory",
     "UserError": "errors",
+    "frame": "video",
     "load_scenario": "scenario",
+    "record": "video",
     "register_planner": "planning",
     "result_of": "metrics",
     "run": "episode",

@@ -91,6 +91,18 @@ class Result(BaseModel):
     digest: str
     version: str
 
+    def to_dict(self) -> dict[str, str | int | float | None]:
+        """Return the result as a flat row: ``pandas.DataFrame([r.to_dict() for r in results])``.
+
+        The keys are the names of the fields above, in their order; ``modes`` becomes
+        ``modes_routine``, ``modes_breakout`` and ``modes_following``. What is null is None.
+        """
+        row: dict[str, str | int | float | None] = {}
+        for name, value in self:
+            parts = value if isinstance(value, BaseModel) else None
+            row |= {name: value} if parts is None else {f"{name}_{key}": n for key, n in parts}
+        return row
+
 
 def result_of(trajectory: Trajectory) -> Result:
     """Return the figures of a run."""

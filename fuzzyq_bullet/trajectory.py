@@ -44,8 +44,7 @@ Outcome: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
 
 FORMAT = 2
 
-_XY = ("x", "y")
-_SIDES = ("left", "right")
+_XY, _SIDES = ("x", "y"), ("left", "right")
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,16 +206,17 @@ class Trajectory:
             f"({scenario.planner.name}, {scenario.drive}, seed {scenario.seed})>"
         )
 
+    def _repr_html_(self) -> str:
+        from fuzzyq_bullet.figures.notebook import html_of  # drawn only where a notebook asks
+
+        return html_of(self)
+
     def __eq__(self, other: object) -> bool:
         """Whether two runs were asked for alike, and went alike to the last bit."""
         if not isinstance(other, Trajectory):
             return NotImplemented
-        return (self.scenario, self.collision, self.version, self.digest()) == (
-            other.scenario,
-            other.collision,
-            other.version,
-            other.digest(),
-        )
+        one, two = ((r.scenario, r.collision, r.version, r.digest()) for r in (self, other))
+        return one == two
 
     def __hash__(self) -> int:
         return hash(self.digest())

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from fuzzyq_bullet import Trajectory, result_of
-from fuzzyq_bullet.scenario import with_options
+from fuzzyq_bullet import Result, Trajectory, load_scenario, result_of, run, with_options
 from tests.helpers.synthetic import drive
 
 
@@ -36,3 +36,20 @@ def test_a_point_robot_has_no_jerk() -> None:
     record = drive(seconds=2.0, outcome="timeout")
     scenario = with_options(record.scenario, drive="kinematic")
     assert result_of(replace(record, scenario=scenario)).mean_jerk is None
+
+
+def test_results_are_rows_of_a_table() -> None:
+    runs = [
+        run(with_options(load_scenario(name), drive="kinematic")) for name in ("boxes", "sparse")
+    ]
+    results = [result_of(one) for one in runs]
+    table = pd.DataFrame([one.to_dict() for one in results])
+    names = [name for name in Result.model_fields if name != "modes"]
+    modes = ["modes_routine", "modes_breakout", "modes_following"]
+    assert sorted(table.columns) == sorted([*names, *modes])
+    assert table["scenario"].tolist() == ["boxes", "sparse"]
+    assert table["time_s"].tolist() == [one.time_s for one in results]
+    assert table[modes].sum(axis=1).tolist() == [one.decisions for one in results]
+    assert table["mean_jerk"].isna().all()  # null in the kinematic drive
+    cells = [cell for one in results for cell in one.to_dict().values()]
+    assert all(cell is None or isinstance(cell, str | int | float) for cell in cells)

@@ -6,6 +6,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from fuzzyq_bullet.errors import UserError
@@ -110,8 +112,21 @@ def record(
     return info
 
 
-def frame(trajectory: Trajectory, time: float) -> Image.Image:
+def frame(trajectory: Trajectory, time: float) -> NDArray[np.uint8]:
     """Return the frame of a run at a time (s) as a picture; after its end, the one that closes it.
+
+    It is the picture that a film of the run has at that time, for a notebook for example::
+
+        from PIL import Image
+
+        Image.fromarray(frame(trajectory, 5.0))
+
+    Args:
+        trajectory: The run.
+        time: Seconds since its start; before its start, the first frame.
+
+    Returns:
+        Red, green and blue from 0 to 255, shape (height, width, 3): (720, 1280, 3).
 
     Raises:
         UserError: If the time is not a number.
@@ -126,7 +141,7 @@ def frame(trajectory: Trajectory, time: float) -> Image.Image:
             moment = closing(moment)
         for region in compositor.changes(moment):
             image.paste(region.image, (region.x, region.y))
-    return image
+    return np.array(image)
 
 
 def moments(timeline: Timeline, speed: float, fps: int = FPS) -> Iterator[Moment]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import pytest
@@ -35,9 +35,11 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.usefixtures("still_once")
 
 
-def pixels(image: Image.Image, rect: Rect) -> np.ndarray[Any, np.dtype[np.int64]]:
-    part = image.crop((rect.x, rect.y, rect.right, rect.bottom))
-    return np.asarray(part).astype(np.int64)
+Pixels: TypeAlias = np.ndarray[Any, np.dtype[np.uint8]]
+
+
+def pixels(image: Image.Image | Pixels, rect: Rect) -> np.ndarray[Any, np.dtype[np.int64]]:
+    return np.asarray(image)[rect.y : rect.bottom, rect.x : rect.right].astype(np.int64)
 
 
 def count(image: np.ndarray[Any, Any], colour: style.Colour, tolerance: int = 12) -> int:
@@ -50,12 +52,12 @@ def run() -> Trajectory:
 
 
 @pytest.fixture(scope="module")
-def middle(run: Trajectory) -> Image.Image:
+def middle(run: Trajectory) -> Pixels:
     return frame(run, 5.5)
 
 
 @pytest.mark.slow
-def test_the_scene_shows_robot_lines_and_goal(middle: Image.Image) -> None:
+def test_the_scene_shows_robot_lines_and_goal(middle: Pixels) -> None:
     scene = pixels(middle, SCENE)
     assert count(scene, style.GOAL, 30) > 100
     assert count(scene, style.ROBOT, 40) > 300

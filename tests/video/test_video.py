@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import fuzzyq_bullet
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.physics.camera import photograph
 from fuzzyq_bullet.video import encoders as encoder_module
@@ -105,6 +106,15 @@ def test_decoded_colours_are_those_that_were_drawn(
     # The compression is lossy; a wrong colour matrix or range would shift everything.
     assert np.abs(shown.mean(axis=(0, 1)) - drawn.mean(axis=(0, 1))).max() < 2.5
     assert np.abs(shown - drawn).mean() < 2.0
+
+
+def test_a_frame_is_an_array_that_belongs_to_the_caller(short: Trajectory) -> None:
+    first = fuzzyq_bullet.frame(short, 0.5)
+    assert (first.shape, first.dtype) == ((720, 1280, 3), np.uint8)
+    again = frame(short, 0.5)
+    assert (first == again).all()
+    first[:] = 0
+    assert again.any()
 
 
 def test_every_colour_comes_out_as_it_went_in(tmp_path: Path) -> None:

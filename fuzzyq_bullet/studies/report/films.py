@@ -235,8 +235,8 @@ def _film(wanted: Wanted, folder: Path) -> dict[str, Any]:
     result = result_of(trajectory)
     speed = next((one for one in SPEEDS if result.time_s <= one * LONGEST), SPEEDS[-1])
     record(trajectory, folder / _VIDEO, speed=speed, small=True)
-    last = frame(trajectory, result.time_s + 1.0).resize(SIZE, Image.Resampling.BOX)
-    last.save(folder / _POSTER, format="JPEG", quality=80)
+    last = Image.fromarray(frame(trajectory, result.time_s + 1.0))
+    last.resize(SIZE, Image.Resampling.BOX).save(folder / _POSTER, format="JPEG", quality=80)
     told = {"outcome": result.outcome, "digest": result.digest, "speed": speed}
     return {"problem": None, **told}
 
