@@ -6,11 +6,13 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from fuzzyq_bullet.fuzzy import ControllerDefinition
+from fuzzyq_bullet.fuzzy.definition_checks import gaps_of
 from fuzzyq_bullet.metrics import has_way
+from fuzzyq_bullet.problems import Loc, Problem, key_path
 from fuzzyq_bullet.quantities import ANGLE_KEYS
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.files import problem_lines
-from fuzzyq_bullet.scenario.problems import Loc, Problem
 
 NO_WAY = "there is no way from the start to the goal for the robot, wherever it drives"
 
@@ -20,17 +22,24 @@ def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
 
     They are: no way to the goal at all, although it is expected to be reached; a limit of time, of
     decisions or an expectation that the robot could not keep on a straight line at full speed; an
-    angle that looks like degrees.
+    angle that looks like degrees; rules with an input that belongs to none of its sets.
 
     Args:
         file: The scenario file.
         given: What it says.
         realised: The same with every obstacle listed.
     """
-    found = [*_degrees(given), *_too_short(given)]
+    found = [*_degrees(given), *_too_short(given), *_gaps(given)]
     if given.expect.outcome == "goal" and has_way(realised) is False:
         found.append(Problem(("goal",), NO_WAY))
     return problem_lines(file, found)
+
+
+def _gaps(scenario: Scenario) -> Iterator[Problem]:
+    rules = getattr(scenario.planner, "rules", None)
+    if isinstance(rules, ControllerDefinition):
+        for loc, why in gaps_of(rules):
+            yield Problem(("planner", "rules"), f"{key_path(loc)}: {why}")
 
 
 def _degrees(scenario: Scenario) -> Iterator[Problem]:

@@ -17,6 +17,7 @@ from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner
+from fuzzyq_bullet.planning.controllers import fields_of
 from fuzzyq_bullet.planning.decision import DecisionError, checked
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.fields import refuse_other_field
@@ -25,6 +26,9 @@ from fuzzyq_bullet.trajectory import Outcome, Trajectory
 
 Progress: TypeAlias = Callable[[float, float], None]
 """Called after every decision with the simulated time (s) and the distance to the goal (m)."""
+Observer: TypeAlias = Callable[[RobotState, Decision, RobotState], None]
+"""Called after every decision with the robot as it was then, the decision, and the robot as it is
+when the next one is due. The run waits for it, and is the same whatever it does."""
 
 STUCK_TIME = 15.0
 STUCK_RADIUS = 0.1
@@ -33,12 +37,15 @@ may take in a narrow place to turn round, try a way twice, and give it up. A rob
 than usual may take as many times longer."""
 
 
-def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
+def run(
+    scenario: Scenario, *, progress: Progress | None = None, observer: Observer | None = None
+) -> Trajectory:
     """Run one episode and return everything that happened.
 
     Args:
         scenario: What to run. Use ``scenario.with_options`` to change planner, seed or drive.
         progress: Called after every decision.
+        observer: Likewise, with what it led to.
 
     Raises:
         UserError: If the scenario cannot be run: overlaps, or obstacles that cannot be placed.
@@ -46,7 +53,7 @@ def run(scenario: Scenario, *, progress: Progress | None = None) -> Trajectory:
     """
     scenario = realise(scenario)
     check(scenario)
-    return run_with(planner_of(scenario), scenario, progress=progress)
+    return run_with(planner_of(scenario), scenario, progress=progress, observer=observer)
 
 
 def planner_of(scenario: Scenario) -> Planner:
@@ -64,7 +71,11 @@ def planner_of(scenario: Scenario) -> Planner:
 
 
 def run_with(
-    planner: Planner, scenario: Scenario, *, progress: Progress | None = None
+    planner: Planner,
+    scenario: Scenario,
+    *,
+    progress: Progress | None = None,
+    observer: Observer | None = None,
 ) -> Trajectory:
     """Run one episode of a realised scenario with a planner, whichever the scenario names.
 
@@ -72,7 +83,7 @@ def run_with(
         PlannerError: If the planner raises, exits or decides what cannot be carried out.
     """
     with world_of(scenario) as world:
-        return run_in(world, scenario, planner, progress=progress)
+        return run_in(world, scenario, planner, progress=progress, observer=observer)
 
 
 def world_of(scenario: Scenario, engine: Engine | None = None) -> SensorWorld:
@@ -87,7 +98,12 @@ def world_of(scenario: Scenario, engine: Engine | None = None) -> SensorWorld:
 
 
 def run_in(
-    world: SensorWorld, scenario: Scenario, planner: Planner, *, progress: Progress | None = None
+    world: SensorWorld,
+    scenario: Scenario,
+    planner: Planner,
+    *,
+    progress: Progress | None = None,
+    observer: Observer | None = None,
 ) -> Trajectory:
     """Run one episode of a realised scenario in a world that is already built for it.
 
@@ -98,7 +114,7 @@ def run_in(
     """
     episode, name = Episode(world, scenario), scenario.planner.name
     while episode.outcome is None:
-        observation = episode.observe()
+        before, observation = episode.now, episode.observe()
         decision = ask(planner, observation, name)
         try:
             episode.advance(decision)
@@ -107,6 +123,8 @@ def run_in(
         if progress is not None:
             now = episode.now
             progress(now.time, math.dist((now.x, now.y), scenario.goal.position))
+        if observer is not None:
+            observer(before, decision, episode.now)
     return episode.record()
 
 
@@ -140,6 +158,7 @@ class Episode:
         if (world.obstacles, world.arena) != (scenario.obstacles, scenario.arena):
             raise ValueError(f"the world was not built for the scenario {scenario.name}")
         self._scenario = scenario
+        self._fields = fields_of(scenario.planner)
         self._field = world.field
         self._driver = _driver(world, scenario, rate)
         self._decisions: list[tuple[int, Decision]] = []
@@ -204,7 +223,7 @@ class Episode:
         Returns:
             A trajectory; while the episode goes on, one that the time has run out for.
         """
-        decisions = [*self._decisions, (len(self._driver.ticks) - 1, checked(told))]
+        decisions = [*self._decisions, (len(self._driver.ticks) - 1, checked(told, self._fields))]
         return self._recorded(decisions, self.outcome or "timeout")
 
     def _recorded(self, decisions: list[tuple[int, Decision]], outcome: Outcome) -> Trajectory:
@@ -222,7 +241,7 @@ class Episode:
     def _note(self, decision: Decision) -> Decision:
         if self.outcome is not None:
             raise ValueError(f"the episode is over ({self.outcome}); begin another")
-        decision = checked(decision)
+        decision = checked(decision, self._fields)
         self._decisions.append((len(self._driver.ticks) - 1, decision))
         return decision
 

@@ -82,6 +82,25 @@ def read_bytes(path: Path, *, what: str, most: int) -> bytes:
     return content
 
 
+def read_text(path: Path, *, what: str, most: int) -> str:
+    """Return the text of a regular file.
+
+    Args:
+        path: The file.
+        what: What it should be, for the error, such as ``a scenario``.
+        most: Most bytes that it may have.
+
+    Raises:
+        UserError: If it cannot be read, is too large, or is not UTF-8; the last with its line.
+    """
+    content = read_bytes(path, what=what, most=most)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise UserError(f"{path}:{line}: is not UTF-8 text") from error
+
+
 def writable_folder(path: Path) -> Path:
     """Create the folder ``path`` if need be and make sure that a file can be written there.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import threading
 import time
 from contextlib import suppress
@@ -26,6 +27,34 @@ def pybullet_in_words() -> str:
         with suppress(PackageNotFoundError):
             return f"{package} {version(package)}"
     return "pybullet"
+
+
+def no_screen() -> str:
+    """Return why no window can be opened here, in a few words; empty if nothing speaks against it.
+
+    PyBullet ends the process where it cannot open its window, so this must be known before. It
+    needs an X server with OpenGL; other systems than Linux are taken to have a screen.
+    """
+    import ctypes  # which nothing else needs
+
+    if not sys.platform.startswith("linux"):
+        return ""
+    name = os.environ.get("DISPLAY", "")
+    if not name:
+        return "the variable DISPLAY is not set"
+    try:
+        x11 = ctypes.CDLL("libX11.so.6")
+        ctypes.CDLL("libGL.so.1")
+    except OSError as error:
+        return f"a library is missing ({str(error).partition(':')[0]})"
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    display = ctypes.c_void_p(x11.XOpenDisplay(name.encode()))
+    if not display:
+        return f"there is no X server at DISPLAY={name}"
+    # It stays open: a server that its last client leaves starts anew, and lets nobody in meanwhile.
+    unused = ctypes.byref(ctypes.c_int())
+    has_opengl = x11.XQueryExtension(display, b"GLX", unused, unused, unused)
+    return "" if has_opengl else f"the X server at DISPLAY={name} has no OpenGL"
 
 
 def end_with(parent: int) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, make_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
@@ -17,11 +17,22 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field, ValidationError
 
-from fuzzyq_bullet.columns import FAR, Column, check_arrays, columns_of, csv_of, documented
+from fuzzyq_bullet.columns import (
+    Column,
+    Columns,
+    check_arrays,
+    columns_of,
+    csv_of,
+    documented,
+)
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.geometry import Field as Obstacles
+from fuzzyq_bullet.planning.controllers import fields_of, fields_with
 from fuzzyq_bullet.planning.decision import FIELDS, Decision
+from fuzzyq_bullet.planning.registry import planner_names
+from fuzzyq_bullet.planning.settings import PlannerSettings
+from fuzzyq_bullet.record_checks import check_collision, check_order
 from fuzzyq_bullet.scenario.expectations import ANY_NAME
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import unknown_names
@@ -32,8 +43,6 @@ Floats: TypeAlias = NDArray[np.float64]
 Outcome: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
 
 FORMAT = 2
-LONGEST = 7200.0
-"""Longest run that is read (s): twice the greatest limit of a scenario."""
 
 _XY, _SIDES = ("x", "y"), ("left", "right")
 
@@ -174,7 +183,7 @@ class Trajectory:
                 tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
                 **{
                     name: _array(column, [getattr(decision, name) for _, decision in decisions])
-                    for name, column in FIELDS.items()
+                    for name, column in fields_of(scenario.planner).items()
                 },
             ),
             version=__version__,
@@ -182,8 +191,13 @@ class Trajectory:
 
     def csv(self, group: Literal["ticks", "decisions"], *, units: bool = False) -> str:
         """Return the ticks or the decisions as CSV (docs/record.md); see ``columns.csv_of``."""
-        columns = TICKS if group == "ticks" else DECISIONS
+        columns = TICKS if group == "ticks" else self.decision_columns
         return csv_of(columns, vars(getattr(self, group)), units=units)
+
+    @property
+    def decision_columns(self) -> Columns:
+        """``DECISIONS``, with the labels of the controller that was asked."""
+        return _columns_in(self.scenario.planner, self._arrays())
 
     def __repr__(self) -> str:
         scenario, ticks = self.scenario, self.ticks
@@ -261,9 +275,11 @@ class Trajectory:
         try:
             head = _Head.model_validate(meta, context=ANY_NAME)
             ticks = Ticks(**check_arrays("ticks", TICKS, arrays))
-            decisions = Decisions(**check_arrays("decisions", DECISIONS, arrays))
-            _check(ticks, decisions)
-            _check_collision(head.collision, head.scenario)
+            columns = _columns_in(head.scenario.planner, arrays)
+            decisions = Decisions(**check_arrays("decisions", columns, arrays))
+            check_order(ticks.time, decisions.tick)
+            if head.collision is not None:
+                check_collision(head.collision, head.scenario)
         except ValidationError as error:
             if names := " and ".join(unknown_names(error)):
                 missing = f"made with {names}, not known here"
@@ -289,6 +305,19 @@ class Trajectory:
             for group in ("ticks", "decisions")
             for name, array in vars(getattr(self, group)).items()
         }
+
+
+def _columns_in(planner: PlannerSettings, arrays: Mapping[str, Any]) -> Columns:
+    """Return the columns of the decisions of a planner.
+
+    Of one that is not registered here nothing is known; its labels are numbers then.
+    """
+    rules = arrays.get("decisions.rules")
+    known = planner.name in planner_names()
+    if known or rules is None or rules.ndim != 3 or rules.shape[1:] == DECISIONS["rules"].shape:
+        return {"tick": DECISIONS["tick"], **fields_of(planner)}
+    near, side = (list(map(str, range(1, size + 1))) for size in rules.shape[1:])
+    return {"tick": DECISIONS["tick"], **fields_with(near, side)}
 
 
 class _Head(BaseModel):
@@ -318,33 +347,3 @@ def _array(column: Column, values: list[Any]) -> NDArray[Any]:
     array = np.array(values, dtype=column.dtype).reshape(len(values), *column.shape)
     # What a planner cannot put into a number is not explained; only a reach may be endless.
     return array if column.endless else np.where(np.isinf(array), np.nan, array)
-
-
-def _check(ticks: Ticks, decisions: Decisions) -> None:
-    """Check what every reader of a record relies on.
-
-    Raises:
-        ValueError: If a run cannot have left these numbers.
-    """
-    if not (np.diff(ticks.time) > 0).all():
-        raise ValueError("ticks.time does not increase")
-    if ticks.time[-1] - ticks.time[0] > LONGEST:
-        raise ValueError(f"ticks.time spans more than {LONGEST:g} s")
-    tick, last = decisions.tick, ticks.time.size - 1
-    if tick.min() < 0 or tick.max() > last or (np.diff(tick) < 0).any():
-        raise ValueError(f"decisions.tick does not run upwards within 0 to {last}")
-
-
-def _check_collision(collision: Collision | None, scenario: Scenario) -> None:
-    """Check what every reader of a collision relies on.
-
-    Raises:
-        ValueError: If a run cannot have left these numbers.
-    """
-    if collision is None:
-        return
-    numbers = (collision.time, *collision.point, collision.normal_force)
-    if not all(abs(number) < FAR for number in numbers):
-        raise ValueError("collision holds a number that is not finite, or is absurd")
-    if not -1 <= collision.obstacle < len(scenario.obstacles):
-        raise ValueError(f"collision.obstacle: there is no obstacle {collision.obstacle}")

@@ -152,6 +152,9 @@ def test_the_wheel_holds_the_data_and_nothing_of_the_checkout_besides(built: Pat
     for folder in ("assets", "scenarios"):
         for path in (ROOT / folder).rglob("*.*"):
             assert f"fuzzyq_bullet/_data/{path.relative_to(ROOT).as_posix()}" in names
+    for path in (ROOT / "fuzzyq_bullet" / "page").rglob("*.*"):
+        if path.suffix != ".pyc":
+            assert path.relative_to(ROOT).as_posix() in names
     assert "fuzzyq_bullet/py.typed" in names
     (source,) = built.glob("*.tar.gz")
     with tarfile.open(source) as archive:

@@ -27,9 +27,9 @@ from fuzzyq_bullet.scenario import (
     with_options,
 )
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
-from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.wording import error_in_words, plain
+from fuzzyq_bullet.yaml_tree import Node, read_tree
 
 OUT_OF_MEMORY = "ran out of the memory that it may use (--memory)"
 

@@ -13,10 +13,12 @@ from fuzzyq_bullet.cli import (
     check,
     explain,
     export,
+    page,
     report,
     run,
     scenarios,
     train,
+    watch,
 )
 from fuzzyq_bullet.cli.options import help_of
 from fuzzyq_bullet.errors import UserError
@@ -40,6 +42,8 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 
 _add("run", run.run)
 _add("replay", run.replay)
+_add("watch", watch.watch)
+_add("page", page.page)
 _add("export", export.export)
 _add("check", check.check)
 _add("import", scenarios.import_map)

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from json import dumps
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fuzzyq_bullet.cli.options import FILE, ReplaceOthersOption, RulesOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from fuzzyq_bullet.fuzzy import ControllerDefinition
     from fuzzyq_bullet.fuzzy.sets import Variable
     from fuzzyq_bullet.learning import Policy
-
-RuleTable: TypeAlias = Literal["corrected", "printed"]
-"""That of ``fuzzyq_bullet.fuzzy``, which waits until it is needed so that --help is quick."""
 
 CONTEXT_SETTINGS: dict[str, Any] = {"ignore_unknown_options": True}
 """For ``app.command``: without it a negative DIFFERENCE would be taken for an option."""
@@ -34,13 +34,14 @@ def explain(
         ),
     ] = None,
     *,
-    rules: Annotated[
-        RuleTable,
-        typer.Option(help="Table 4 as it must be meant, or as it is printed in the paper."),
-    ] = "corrected",
+    rules: RulesOption = None,
     samples: Annotated[
-        int, typer.Option(help="Points of the centroid (n of Eq. 22); the paper takes 5.")
-    ] = 101,
+        int | None,
+        typer.Option(
+            help="Points of the centroid (n of Eq. 22); the paper takes 5.",
+            show_default="as the rules say; 101 for Table 4",
+        ),
+    ] = None,
     policy: Annotated[
         str | None,
         typer.Option(
@@ -48,26 +49,40 @@ def explain(
             help="A policy of fuzzy-q-lambda, or the word shipped: show the weights of each rule.",
         ),
     ] = None,
+    export: Annotated[
+        Path | None,
+        typer.Option(help="Write the controller instead, as .yaml, .fll or .fis.", **FILE),
+    ] = None,
+    replace: ReplaceOthersOption = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout, alone.")] = False,
 ) -> None:
     """Show which fuzzy rules fire, how strongly, and the turn and step that follow.
 
-    With --policy also what each rule has learned; then D and DF may be left out.
+    With --policy also what each rule has learned; then D and DF may be left out. With --export
+    write the controller to a file, to be changed and driven with (docs/rules.md).
 
     Raises:
         UserError: If an input lies outside its domain, is missing or is not a number, there are
-            too few samples, or the policy cannot be used.
+            too few samples, the rules or the policy cannot be used, or a file cannot be written.
     """
-    from fuzzyq_bullet.fuzzy import paper_controller
+    from fuzzyq_bullet.cli.rules import export_controller, rules_given, tell_gaps
+    from fuzzyq_bullet.fuzzy.definition import MOST_SAMPLES
     from fuzzyq_bullet.fuzzy.inference import LEAST_SAMPLES
 
-    if samples < LEAST_SAMPLES:
-        raise UserError(f"--samples: {samples} is too few; at least {LEAST_SAMPLES}")
+    if samples is not None and not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
+        bounds = f"from {LEAST_SAMPLES} to {MOST_SAMPLES}"
+        raise UserError(f"--samples: must be {bounds}, got {samples}")
+    definition = rules_given(rules)
+    tell_gaps(definition, rules)
+    if export is not None:
+        export_controller(definition, samples, export, rules, replace=replace)
+        return
     if difference is None and (distance is not None or policy is None):
         missing = "D" if distance is None else "DF"
         raise UserError(f"{missing}: missing; give D and DF, or neither and --policy")
-    controller = paper_controller(rules, samples)
-    learned = None if policy is None else _learned(policy)
+    controller = definition.controller(samples)
+    title = definition.name or rules or ""
+    learned = None if policy is None else _learned(policy, definition)
     inference = None
     if distance is not None and difference is not None:
         _check("D", distance, controller.base.row)
@@ -82,25 +97,25 @@ def explain(
     answer: dict[str, Any] = {}
     parts: list[RenderableType] = []
     if inference is not None and distance is not None and difference is not None:
-        answer |= as_dict(controller, rules, distance, difference, inference)
+        answer |= as_dict(controller, rules or "corrected", distance, difference, inference)
         page = as_page(
-            controller, rules, distance, difference, inference, console.width,
+            controller, title, distance, difference, inference, console.width,
             known=learned is not None,
         )  # fmt: skip
         parts.append(page)
     if learned is not None:
-        answer |= weights_as_dict(learned, inference)
-        parts.append(weights_as_page(learned, inference))
+        answer |= weights_as_dict(learned, controller.base, inference)
+        parts.append(weights_as_page(learned, controller.base, inference))
     if json:
         typer.echo(dumps(answer, indent=2))
     else:
         console.print(Group(*parts))
 
 
-def _learned(name: str) -> Policy:
+def _learned(name: str, rules: ControllerDefinition) -> Policy:
     from fuzzyq_bullet.planning.fuzzy_q_lambda import learned_policy
 
-    return learned_policy(None if name == "shipped" else name)
+    return learned_policy(None if name == "shipped" else name, rules)
 
 
 def _check(name: str, value: float, variable: Variable) -> None:

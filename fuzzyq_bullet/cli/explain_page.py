@@ -17,7 +17,7 @@ from fuzzyq_bullet.planning.settings import RoutineSettings, WeightsSettings
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fuzzyq_bullet.fuzzy import FuzzyController, Inference, RuleTable
+    from fuzzyq_bullet.fuzzy import FuzzyController, Inference
     from fuzzyq_bullet.fuzzy.rules import Rule
     from fuzzyq_bullet.fuzzy.sets import Variable
 
@@ -31,7 +31,7 @@ WEIGHTS: tuple[float, float] = WeightsSettings.model_fields["weights"].default
 
 def as_dict(
     controller: FuzzyController,
-    rules: RuleTable,
+    rules: str,
     distance: float,
     difference: float,
     inference: Inference,
@@ -42,7 +42,7 @@ def as_dict(
         "distance": distance,
         "difference": difference,
         "table": rules,
-        "samples": controller.samples,
+        "samples": controller.method.samples,
         "near": dict(zip(base.row.labels, inference.near, strict=True)),
         "side": dict(zip(base.column.labels, inference.side, strict=True)),
         "rules": [
@@ -61,7 +61,7 @@ def as_dict(
 
 def as_page(
     controller: FuzzyController,
-    rules: RuleTable,
+    rules: str,
     distance: float,
     difference: float,
     inference: Inference,
@@ -81,6 +81,7 @@ def as_page(
         known: Whether the weights in force are known, and told elsewhere.
     """
     base = controller.base
+    paper = rules.startswith("Table 4")
     near = _memberships(f"d = {distance:g} S_p free ahead", base.row, inference.near)
     side = _memberships(
         f"Df = {difference:g} S_p: {_roomier(difference)}", base.column, inference.side
@@ -92,16 +93,16 @@ def as_page(
         inputs.add_row(near)
         inputs.add_row(side)
     return Group(
-        title_line("Inputs, and how far they belong to each set (Table 2)"),
+        title_line("Inputs, and how far they belong to each set" + (" (Table 2)" if paper else "")),
         inputs,
         Text(),
-        title_line(f"Rules (Table 4, {rules}): [turn step] and strength, ◀ the strongest"),
-        Text("Columns NB and NS: the right is freer; PS and PB: the left is."),
+        title_line(f"Rules ({rules}): [turn step] and strength, ◀ the strongest"),
+        Text(columns_in_words(base.column)),
         _rule_table(controller, inference, folded=width < WIDE),
         title_line("Rules that fire, strongest first"),
         _sentences(controller, inference, width),
         Text(),
-        title_line(f"Outputs (centroid of {controller.samples} points, Eq. 22)"),
+        title_line(f"Outputs ({_method_in_words(controller)})"),
         _outputs(base.outputs, inference, folded=width < WIDE),
         Text(),
         title_line("In metres and degrees"),
@@ -118,6 +119,25 @@ def _firing(controller: FuzzyController, inference: Inference) -> list[tuple[flo
 def title_line(words: str) -> Text:
     """Return a heading."""
     return Text(words, style="bold underline")
+
+
+def columns_in_words(variable: Variable) -> str:
+    """Say on which side there is more room in the columns of a table."""
+    right = [one.label for one in variable.sets if one.center < 0.0]
+    left = [one.label for one in variable.sets if one.center > 0.0]
+    told = [
+        f"{' and '.join(labels)}: the {side} is freer"
+        for labels, side in ((right, "right"), (left, "left"))
+        if labels
+    ]
+    return f"Columns {'; '.join(told)}."
+
+
+def _method_in_words(controller: FuzzyController) -> str:
+    method = controller.method
+    if method.defuzzification == "average":
+        return "average of the conclusions' centers, by how strongly the rules fire"
+    return f"centroid of {method.samples} points, Eq. 22"
 
 
 def _roomier(difference: float) -> str:
@@ -153,6 +173,7 @@ def _bar(share: float, width: int, style: str) -> Text:
 def _rule_table(controller: FuzzyController, inference: Inference, *, folded: bool) -> Table:
     base = controller.base
     strongest = max(map(max, inference.rules))
+    widest = max(len(" ".join(cell)) for row in base.cells for cell in row)
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1))
     table.add_column("d \\ Df", style="bold", overflow="fold")
     for label in base.column.labels:
@@ -161,16 +182,16 @@ def _rule_table(controller: FuzzyController, inference: Inference, *, folded: bo
         table.add_row(
             label,
             *(
-                _cell(cell, strength, strongest, folded=folded)
+                _cell(" ".join(cell).ljust(widest), strength, strongest, folded=folded)
                 for cell, strength in zip(cells, strengths, strict=True)
             ),
         )
     return table
 
 
-def _cell(labels: tuple[str, ...], strength: float, strongest: float, *, folded: bool) -> Text:
+def _cell(names: str, strength: float, strongest: float, *, folded: bool) -> Text:
     """Write one rule so that weak, firing and strongest differ in shape, not only in colour."""
-    names = f"{' '.join(labels):<5}" + ("\n" if folded else " ")
+    names += "\n" if folded else " "
     if strength < FIRES:
         return Text(f"{names}  ·  ", style="dim")
     if strength == strongest:
@@ -194,17 +215,17 @@ def _sentences(controller: FuzzyController, inference: Inference, width: int) ->
 
 
 def _sentence(controller: FuzzyController, inference: Inference, rule: Rule) -> tuple[str, str]:
-    """Return the rule in words, in two halves, with the memberships whose product it fires at."""
+    """Return the rule in words, in two halves, with the memberships that it fires by."""
     base = controller.base
     near = inference.near[base.row.labels.index(rule.row)]
     side = inference.side[base.column.labels.index(rule.column)]
     then = ", ".join(
-        f"{output.name} {output.words(label)}"
+        f"{output.name} {output.set_of(label).words}"
         for output, label in zip(base.outputs, rule.then, strict=True)
     )
     return (
-        f"if {base.row.name} is {base.row.words(rule.row)} ({near:.2f}) "
-        f"and {base.column.name} is {base.column.words(rule.column)} ({side:.2f})",
+        f"if {base.row.name} is {base.row.set_of(rule.row).words} ({near:.2f}) "
+        f"and {base.column.name} is {base.column.set_of(rule.column).words} ({side:.2f})",
         f"then {then}",
     )
 

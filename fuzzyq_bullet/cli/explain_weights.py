@@ -9,22 +9,24 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from fuzzyq_bullet.cli.explain_page import FIRES, title_line, turn_and_step
+from fuzzyq_bullet.cli.explain_page import FIRES, columns_in_words, title_line, turn_and_step
 from fuzzyq_bullet.errors import printable
-from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE
-from fuzzyq_bullet.planning.fuzzy_q_lambda import RULE_NAMES, firing, weighed, weights_of
+from fuzzyq_bullet.planning.fuzzy_q_lambda import firing, rule_names, weighed, weights_of
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy import Inference
+    from fuzzyq_bullet.fuzzy.rules import RuleBase
     from fuzzyq_bullet.learning import Policy
 
 
-def weights_as_dict(policy: Policy, inference: Inference | None) -> dict[str, Any]:
+def weights_as_dict(policy: Policy, base: RuleBase, inference: Inference | None) -> dict[str, Any]:
     """Return the weights of every rule, and those in force where something is sensed."""
     learned = {
         "weights": [
             {"rule": rule, "step": step, "turn": turn}
-            for rule, (step, turn) in zip(RULE_NAMES, weights_of(policy).tolist(), strict=True)
+            for rule, (step, turn) in zip(
+                rule_names(base), weights_of(policy).tolist(), strict=True
+            )
         ]
     }
     if inference is None:
@@ -32,16 +34,13 @@ def weights_as_dict(policy: Policy, inference: Inference | None) -> dict[str, An
     return learned | {"weights_in_force": list(weighed(firing(inference), weights_of(policy)))}
 
 
-def weights_as_page(policy: Policy, inference: Inference | None) -> RenderableType:
+def weights_as_page(policy: Policy, base: RuleBase, inference: Inference | None) -> RenderableType:
     """Return the table of weights, in which the rules that fire stand out."""
     parts: list[RenderableType] = [
         title_line("What each rule has learned: ω1 of its step, ω2 of its turn"),
         Text(f"{printable(policy.command)}  ({policy.episodes} episodes)", style="dim"),
-        Text(
-            "Columns NB and NS: the right is freer; PS and PB: the left is."
-            + ("" if inference is None else " ◀ fires here.")
-        ),
-        _table(policy, inference),
+        Text(columns_in_words(base.column) + ("" if inference is None else " ◀ fires here.")),
+        _table(policy, base, inference),
     ]
     if inference is not None:
         w1, w2 = weighed(firing(inference), weights_of(policy))
@@ -51,15 +50,15 @@ def weights_as_page(policy: Policy, inference: Inference | None) -> RenderableTy
     return Group(*parts)
 
 
-def _table(policy: Policy, inference: Inference | None) -> Table:
-    weights = weights_of(policy).reshape(len(DISTANCE.sets), len(DIFFERENCE.sets), 2)
+def _table(policy: Policy, base: RuleBase, inference: Inference | None) -> Table:
+    weights = weights_of(policy).reshape(len(base.row.sets), len(base.column.sets), 2)
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1))
     table.add_column("d \\ Df", style="bold")
-    for label in DIFFERENCE.labels:
+    for label in base.column.labels:
         table.add_column(label)
-    for row, label in enumerate(DISTANCE.labels):
+    for row, label in enumerate(base.row.labels):
         cells = []
-        for column in range(len(DIFFERENCE.sets)):
+        for column in range(len(base.column.sets)):
             step, turn = weights[row, column]
             strength = 1.0 if inference is None else inference.rules[row][column]
             words = f"{step:g} {turn:g}"

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from fuzzyq_bullet.cli.options import FOLDER, PluginOption, ReplaceOption
 from fuzzyq_bullet.errors import UserError
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
 
 GROUPS: tuple[Literal["ticks", "decisions"], ...] = ("ticks", "decisions")
 
@@ -21,6 +24,9 @@ def export(
     csv: Annotated[
         bool, typer.Option("--csv", help="NAME-ticks.csv and NAME-decisions.csv.")
     ] = False,
+    mcap: Annotated[
+        bool, typer.Option("--mcap", help="NAME.mcap, for Foxglove (extra mcap).")
+    ] = False,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder to write into; by default that of the record.", **FOLDER),
@@ -28,25 +34,43 @@ def export(
     plugin: PluginOption = None,
     replace: ReplaceOption = False,
 ) -> None:
-    """Write a record as CSV: what the robot did at every tick, and every decision.
+    """Write a record as CSV, as MCAP, or both.
 
-    The unit of a column stands in brackets in its heading. What the columns mean: docs/record.md.
+    CSV: what the robot did at every tick, and every decision; the unit of a column stands in
+    brackets in its heading. MCAP: scene, robot, detection lines, ticks, decisions and events over
+    simulated time, to be played in Foxglove. What all of it means: docs/record.md.
 
     Raises:
-        UserError: If no form is asked for, the record cannot be read, or a file cannot be written.
+        UserError: If no form is asked for, its extra is missing, the record cannot be read, or a
+            file cannot be written.
     """
-    if not csv:
-        raise UserError("nothing to export: --csv says in which form")
-    from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
+    if not (csv or mcap):
+        raise UserError("nothing to export: --csv or --mcap says in which form")
+    from fuzzyq_bullet.files import refuse_inputs, writable_files, written_beside
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run
     from fuzzyq_bullet.trajectory import Trajectory
 
     record = Trajectory.load(trajectory)
-    folder = out or trajectory.parent
-    paths = writable_files(folder, [f"{trajectory.stem}-{group}.csv" for group in GROUPS])
+    name, folder = trajectory.stem, out or trajectory.parent
+    names = [f"{name}-{group}.csv" for group in GROUPS if csv] + [f"{name}.mcap"] * mcap
+    paths = writable_files(folder, names)
     refuse_inputs(paths, [trajectory, *plugin_inputs(plugin or [])])
     if not replace and not folder.samefile(trajectory.parent):
-        refuse_other_run(folder / f"{trajectory.stem}.npz", paths, record.scenario)
-    for path, group in zip(paths, GROUPS, strict=True):
-        write_text(path, record.csv(group, units=True))
+        refuse_other_run(folder / f"{name}.npz", paths, record.scenario)
+    contents = [record.csv(group, units=True).encode() for group in GROUPS if csv]
+    if mcap:
+        contents.append(_mcap(record))
+    for path, content in zip(paths, contents, strict=True):
+        with written_beside(path) as part:
+            part.write_bytes(content)
         typer.echo(path)
+
+
+def _mcap(record: Trajectory) -> bytes:
+    try:
+        from fuzzyq_bullet.export.mcap import mcap_of
+    except ImportError as error:
+        raise UserError(
+            "--mcap: foxglove-sdk is not installed: pip install 'fuzzyq_bullet[mcap]'"
+        ) from error
+    return mcap_of(record)

@@ -65,7 +65,7 @@ PluginOption: TypeAlias = Annotated[
 ]
 SpeedOption: TypeAlias = Annotated[
     float,
-    typer.Option(help="Playback speed of the video; 1 is real time.", callback=_check_speed),
+    typer.Option(help="Playback speed; 1 is real time.", callback=_check_speed),
 ]
 ReplaceOption: TypeAlias = Annotated[
     bool, typer.Option("--replace", help="Replace files of another run of that name.")
@@ -76,6 +76,15 @@ ReplaceOthersOption: TypeAlias = Annotated[
 PlannerOption: TypeAlias = Annotated[
     str | None,
     typer.Option(help="Planner to use instead, with the same settings as far as it has them."),
+]
+RulesOption: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="RULES",
+        help="Table 4 of the paper, corrected or printed; or a .yaml, .fll or .fis file of your "
+        "own (docs/rules.md).",
+        show_default="corrected",
+    ),
 ]
 Json: TypeAlias = Annotated[bool, typer.Option("--json", help="As JSON on stdout, alone.")]
 

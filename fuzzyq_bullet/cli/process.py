@@ -32,9 +32,10 @@ def guard(command: Callable[[], int]) -> NoReturn:
 
     A signal ends it in good order: everything half-written is removed, nobody sees a traceback.
     Its output may end in a pipe that closes early, which changes nothing about the verdict. A
-    user's own code runs in a second process, so that what that does to it is no verdict either.
+    user's own code and a window run in a second process, so that what these do to it is no verdict
+    either.
     """
-    report = _supervise() if _has_plugins() else None
+    report = _supervise() if _may_be_ended() else None
     try:
         _catch_signals()
         _set_up_streams()
@@ -50,9 +51,14 @@ def guard(command: Callable[[], int]) -> NoReturn:
     sys.exit(status)
 
 
-def _has_plugins() -> bool:
-    """Tell whether the command line loads plugins, here where processes can be forked."""
-    return hasattr(os, "fork") and any(word.startswith("--plugin") for word in sys.argv[1:])
+def _may_be_ended() -> bool:
+    """Tell whether the command line loads plugins or opens a window, which may end the process.
+
+    Only where processes can be forked.
+    """
+    words = sys.argv[1:]
+    plugins = any(word.startswith("--plugin") for word in words)
+    return hasattr(os, "fork") and (plugins or words[:1] == ["watch"])
 
 
 def _supervise() -> Callable[[int], None]:

@@ -15,6 +15,7 @@ from fuzzyq_bullet.cli.options import (
     PlannerOption,
     PluginOption,
     ReplaceOthersOption,
+    RulesOption,
 )
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.wording import shorten
@@ -36,6 +37,7 @@ def figure(
     *,
     out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
     planner: PlannerOption = None,
+    rules: RulesOption = None,
     plugin: PluginOption = None,
     replace: ReplaceOthersOption = False,
 ) -> None:
@@ -57,6 +59,16 @@ def figure(
     from fuzzyq_bullet.files import refuse_inputs
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
 
+    definition = None
+    if rules is not None:
+        from fuzzyq_bullet.cli.rules import rules_given, tell_gaps
+
+        if name not in ("4", "weights"):
+            raise UserError(
+                f"--rules: figure {shorten(name)} shows no controller; 4 and weights do"
+            )
+        definition = rules_given(rules)
+        tell_gaps(definition, rules)
     known = {str(number): shows for number, shows in FIGURES.items()} | LEARNED
     if name not in known:
         told = "; ".join(f"{key} ({shows})" for key, shows in known.items())
@@ -65,15 +77,20 @@ def figure(
     if name in LEARNED:
         if planner is not None:
             raise UserError(f"--planner: {name} shows no run that a planner could drive")
-        target, draw = out / file_name(name), drawing_learned(name, given)
+        target, draw = out / file_name(name), drawing_learned(name, given, definition)
     else:
         number = int(name)
         if given:
             raise UserError(f"POLICY: figure {name} shows nothing that was learned")
         if planner is not None and number not in OF_RUNS:
             raise UserError(f"--planner: figure {name} shows no run that a planner could drive")
-        target, draw = out / file_name(f"figure{name}", planner), drawing(number, planner)
-    refuse_inputs([target], [*given, *plugin_inputs(plugin or [])])
+        target, draw = (
+            out / file_name(f"figure{name}", planner),
+            drawing(number, planner, definition),
+        )
+    refuse_inputs(
+        [target], [*given, *([] if rules is None else [Path(rules)]), *plugin_inputs(plugin or [])]
+    )
     if not replace:
         refuse_others_file(target, MARK)
     for path in draw(out):

@@ -63,7 +63,7 @@ def run(
     from fuzzyq_bullet.scenario import load_scenario, realise
 
     given = load_scenario(scenario, policies=planner is None)  # another planner has its own
-    asked = _with_options(given, planner=planner, seed=seed, drive=drive)
+    asked = asked_for(given, planner=planner, seed=seed, drive=drive)
     task = realise(asked)
     name = run_name(given, asked)
     mp4, npz, result_file = written = writable_files(
@@ -107,7 +107,7 @@ def run(
     if json:
         typer.echo(result.model_dump_json(indent=2))
     misses = unmet_expectations(task.expect, result)
-    _summarise(result, misses, trajectory, listed=len(asked.obstacles))
+    summarise(result, misses, trajectory, listed=len(asked.obstacles))
     for path in written:
         say(f"  {path}")
     for path in films_of(out, name):
@@ -166,7 +166,12 @@ def _film(trajectory: Trajectory, path: Path, speed: float) -> Path:
     return path
 
 
-def _with_options(scenario: Scenario, **options: Any) -> Scenario:
+def asked_for(scenario: Scenario, **options: Any) -> Scenario:
+    """Return a scenario with the planner, seed and drive that options ask for.
+
+    Raises:
+        UserError: If there is no such planner or drive, or the seed is none.
+    """
     from fuzzyq_bullet.scenario import with_options
 
     try:
@@ -175,9 +180,10 @@ def _with_options(scenario: Scenario, **options: Any) -> Scenario:
         raise UserError(*(f"--{problem}" for problem in error.problems)) from error
 
 
-def _summarise(
+def summarise(
     result: Result, misses: Sequence[str], trajectory: Trajectory, *, listed: int
 ) -> None:
+    """Say how a run went; ``listed`` obstacles of it are in the scenario file."""
     from fuzzyq_bullet.metrics import collision_text
     from fuzzyq_bullet.wording import plain
 

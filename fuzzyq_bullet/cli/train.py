@@ -67,6 +67,14 @@ def train(
             **HOW,
         ),
     ] = None,
+    rules: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Rules of your own whose weights fuzzy-q-lambda learns (docs/rules.md).",
+            **HOW,
+        ),
+    ] = None,
     options: Annotated[
         Path | None,
         typer.Option(
@@ -138,6 +146,7 @@ def train(
             scenario,
             asked.changed_by(LearningOptions.parse(given)),
             plugin or [],
+            rules,
         )
     except UserError as error:
         name, _, why = error.problems[0].partition(": ")
@@ -151,7 +160,7 @@ def train(
     from fuzzyq_bullet.scenario import find_scenario
 
     read = [] if scenario is None else [find_scenario(scenario)]
-    read += [] if options is None else [options]
+    read += [Path(one) for one in (options, rules) if one is not None]
     refuse_inputs(files.all, [*read, *plugin_inputs(plugin or [])])
     try:
         with alone_at(files.checkpoint):

@@ -9,9 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from fuzzyq_bullet.errors import UserError
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.fuzzy import ControllerDefinition
 
 Draw: TypeAlias = Callable[[Path], list[Path]]
 """Draws into a folder and returns the files written, the main one first."""
@@ -42,12 +45,15 @@ def file_name(name: str, planner: str | None = None) -> str:
     return f"{name}.png" if planner is None else f"{name}-{planner}.png"
 
 
-def drawing(number: int, planner: str | None = None) -> Draw:
+def drawing(
+    number: int, planner: str | None = None, rules: ControllerDefinition | None = None
+) -> Draw:
     """Return the function that draws a figure; only now is its module imported.
 
     Args:
         number: Of the figure.
         planner: Planner that drives instead; only for those ``OF_RUNS``.
+        rules: Controller to show instead of the paper's; only for figure 4.
 
     Raises:
         KeyError: If no figure has this number.
@@ -55,18 +61,21 @@ def drawing(number: int, planner: str | None = None) -> Draw:
     if number == 4:
         from fuzzyq_bullet.figures import figure4
 
-        return figure4.draw
+        return partial(figure4.draw, rules=rules)
     from fuzzyq_bullet.figures import runs
 
     return partial(runs.FIGURES[number].draw, planner=planner)
 
 
-def drawing_learned(name: str, policies: Sequence[Path]) -> Draw:
+def drawing_learned(
+    name: str, policies: Sequence[Path], rules: ControllerDefinition | None = None
+) -> Draw:
     """Return the function that draws a picture of ``LEARNED``.
 
     Args:
         name: Of the picture.
         policies: What it shows.
+        rules: The rules that the policy of ``weights`` weighs; by default those of Table 4.
 
     Raises:
         UserError: If more policies are named than it shows.
@@ -79,4 +88,4 @@ def drawing_learned(name: str, policies: Sequence[Path]) -> Draw:
 
     if len(policies) > 1:
         raise UserError(f"POLICY: weights shows one policy, got {len(policies)}")
-    return partial(rule_weights.draw, policy=policies[0] if policies else None)
+    return partial(rule_weights.draw, policy=policies[0] if policies else None, rules=rules)

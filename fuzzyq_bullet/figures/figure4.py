@@ -11,21 +11,30 @@ from matplotlib.figure import Figure
 from fuzzyq_bullet.figures import MARK
 from fuzzyq_bullet.figures.style import save_png
 from fuzzyq_bullet.files import writable_folder
-from fuzzyq_bullet.fuzzy import FuzzyController, paper_controller
-from fuzzyq_bullet.fuzzy.sets import Floats, Variable
+from fuzzyq_bullet.fuzzy import ControllerDefinition, FuzzyController, paper_controller
+from fuzzyq_bullet.fuzzy.memberships import Floats
+from fuzzyq_bullet.fuzzy.sets import Variable
 
 POINTS = 61
 """Points along each input: enough for a smooth surface, few enough to draw at once."""
 
 
-def draw(out: Path) -> list[Path]:
+def draw(out: Path, rules: ControllerDefinition | None = None) -> list[Path]:
     """Draw both surfaces side by side into ``out/figure4.png``.
+
+    Args:
+        out: Folder.
+        rules: Whose surfaces; by default those of the paper's controller.
 
     Raises:
         UserError: If the file cannot be written.
     """
     path = writable_folder(out) / "figure4.png"
-    save_png(picture(paper_controller()), path, metadata={"Software": MARK})
+    save_png(
+        picture(paper_controller() if rules is None else rules.controller()),
+        path,
+        metadata={"Software": MARK},
+    )
     return [path]
 
 

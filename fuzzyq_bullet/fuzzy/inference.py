@@ -1,25 +1,45 @@
-"""Product inference, maximum aggregation and the sampled centroid (Eqs. 2–5 and 22).
+"""Mamdani inference: the rules fire, meet by maximum, and become numbers (Eqs. 2–5 and 22).
 
-``ProductInference`` takes any rule base of two inputs; ``FuzzyController`` names the paper's.
+``MamdaniInference`` takes any rule base of two inputs; ``FuzzyController`` has a turn and a step.
 
 All that does not depend on the inputs is computed once.
 """
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from fuzzyq_bullet.fuzzy.memberships import Floats
     from fuzzyq_bullet.fuzzy.rules import RuleBase
 
 LEAST_SAMPLES = 3
 _NO_AREA = 1e-300
 """Below this, sums of memberships lose their digits, and a centroid would be noise."""
+
+
+class Method(NamedTuple):
+    """How rules are combined, and how what they conclude becomes a number.
+
+    Attributes:
+        conjunction: What "and" and "then" are: the product (the paper's), which scales what a rule
+            concludes; or the minimum, which cuts it off.
+        defuzzification: ``centroid`` of the joint conclusions (the paper's); or ``average`` of the
+            centers of what the rules conclude, weighed by how strongly they fire.
+        samples: n of Eq. 22: points over each output's domain, its two ends included.
+    """
+
+    conjunction: Literal["product", "minimum"] = "product"
+    defuzzification: Literal["centroid", "average"] = "centroid"
+    samples: int = 101
+
+
+USUAL = Method()
+"""How the paper infers, with enough samples."""
 
 
 class Fired(NamedTuple):
@@ -29,8 +49,7 @@ class Fired(NamedTuple):
         row: Memberships of the row variable, shape (R,).
         column: Memberships of the column variable, shape (C,).
         rules: Firing strengths of the rules (Eq. 2), shape (R, C).
-        values: For each output the centroid (Eq. 22), or its fallback where the aggregate is zero
-            all over.
+        values: For each output its number (Eq. 22), or its fallback where no rule fires.
     """
 
     row: tuple[float, ...]
@@ -39,47 +58,49 @@ class Fired(NamedTuple):
     values: tuple[float, ...]
 
 
-class ProductInference:
-    """Mamdani inference over a rule base, with products for "and" and for "then".
+class MamdaniInference:
+    """Mamdani inference over a rule base of two inputs.
 
     Attributes:
         base: The rules, and through them the variables.
-        samples: n of Eq. 22: points over each output's domain, its two ends included.
+        method: How they are combined, and what becomes of them.
     """
 
     __slots__ = (
+        "_centers",
         "_column_sets",
         "_concluding",
+        "_domains",
         "_fallback",
         "_moments",
         "_row_sets",
         "_sampled",
         "base",
-        "samples",
+        "method",
     )
 
-    def __init__(self, base: RuleBase, *, samples: int, fallback: Sequence[float]) -> None:
+    def __init__(self, base: RuleBase, method: Method, *, fallback: Sequence[float]) -> None:
         """Sample every output set and sort the rules by the label that they conclude.
 
         Args:
             base: The rules.
-            samples: n of Eq. 22, at least 3.
+            method: How to infer.
             fallback: For each output, the value where no rule fires to any measurable degree.
 
         Raises:
-            ValueError: If ``samples`` is too few, or ``fallback`` has not one value an output.
+            ValueError: If there are too few samples, or ``fallback`` has not one value an output.
         """
+        samples = method.samples
         if samples < LEAST_SAMPLES:
             raise ValueError(f"{samples} samples; Eq. 22 needs at least {LEAST_SAMPLES}")
         if len(fallback) != len(base.outputs):
             raise ValueError(f"{len(fallback)} fallback values for {len(base.outputs)} outputs")
         self.base = base
-        self.samples = samples
+        self.method = method
         self._fallback = tuple(fallback)
 
         self._row_sets, self._column_sets = (
-            [(one.center, -0.5 / one.width**2) for one in variable.sets]
-            for variable in (base.row, base.column)
+            [one.function for one in variable.sets] for variable in (base.row, base.column)
         )
         grids = [np.linspace(*output.domain, samples) for output in base.outputs]
         # The aggregates of all outputs, end to end, times this are first every Σ u·μ(u), then every
@@ -113,9 +134,20 @@ class ProductInference:
                 name = list(labels)[slot % len(labels)]
                 self._concluding[slot, k] = np.resize(labels[name], longest)
                 self._sampled[slot, k] = output.memberships(u)[output.labels.index(name)]
+        # For each rule the centers of what it concludes, and a 1 to add up the strengths.
+        self._centers = np.array(
+            [
+                [
+                    *(o.set_of(to).center for o, to in zip(base.outputs, rule.then, strict=True)),
+                    1.0,
+                ]
+                for rule in rules
+            ]
+        )
+        self._domains = [output.domain for output in base.outputs]
 
     def infer(self, x: float, y: float) -> Fired:
-        """Fuzzify, fire the rules, aggregate and take the centroids.
+        """Fuzzify, fire the rules, aggregate and defuzzify.
 
         Args:
             x: Value of the row variable, within its domain.
@@ -124,18 +156,26 @@ class ProductInference:
         Returns:
             What fired, and how strongly.
         """
-        row = tuple([math.exp((x - at) * (x - at) * scale) for at, scale in self._row_sets])
-        column = tuple([math.exp((y - at) * (y - at) * scale) for at, scale in self._column_sets])
-        rules = np.multiply.outer(row, column)
+        row = tuple([one.degree(x) for one in self._row_sets])
+        column = tuple([one.degree(y) for one in self._column_sets])
+        combine: np.ufunc = np.multiply if self.method.conjunction == "product" else np.minimum
+        rules = combine.outer(row, column)
+        values = (
+            self._centroids(rules, combine)
+            if self.method.defuzzification == "centroid"
+            else self._averages(rules)
+        )
+        return Fired(row, column, tuple(map(tuple, rules.tolist())), values)
 
-        # Eqs. 3 and 4. Rules that conclude the same set differ only by a factor, so the largest
-        # of them is that set times the largest strength.
+    def _centroids(self, rules: Floats, combine: np.ufunc) -> tuple[float, ...]:
+        # Eqs. 3 and 4. Rules that conclude the same set differ only in their strength, so the
+        # largest of them is that set times (or cut at) the largest strength.
         labels = rules.ravel()[self._concluding].max(axis=2, keepdims=True)
-        aggregate = np.maximum.reduce(labels * self._sampled)
+        aggregate = np.maximum.reduce(combine(labels, self._sampled))
 
         sums = aggregate.ravel().dot(self._moments).tolist()
         count = len(self._fallback)
-        values = tuple(
+        return tuple(
             [
                 moment / area if area > _NO_AREA else fallback
                 for moment, area, fallback in zip(
@@ -143,16 +183,27 @@ class ProductInference:
                 )
             ]
         )
-        return Fired(row, column, tuple(map(tuple, rules.tolist())), values)
+
+    def _averages(self, rules: Floats) -> tuple[float, ...]:
+        *sums, strength = rules.ravel().dot(self._centers).tolist()
+        if strength <= _NO_AREA:
+            return self._fallback
+        # A center may lie outside the domain; a value may not.
+        return tuple(
+            [
+                min(max(total / strength, low), high)
+                for total, (low, high) in zip(sums, self._domains, strict=True)
+            ]
+        )
 
 
 class Inference(NamedTuple):
     """One inference of the controller, with everything that led to it.
 
     Attributes:
-        near: Memberships of the distance in each of its labels, shape (5,) in the paper.
-        side: Memberships of the difference in each of its labels, shape (5,) in the paper.
-        rules: Firing strengths (Eq. 2), shape (5, 5) in the paper: a row for each label of the
+        near: Memberships of the distance in each of its labels, shape (R,).
+        side: Memberships of the difference in each of its labels, shape (C,).
+        rules: Firing strengths (Eq. 2), shape (R, C): a row for each label of the
             distance, a column for each of the difference.
         turn: N_a, the scale of the turn, positive to the left.
         stride: N_s, the scale of the step.
@@ -173,26 +224,27 @@ class FuzzyController:
     Attributes:
         base: The rule table, with rows of the distance, columns of the difference and the outputs
             (turn, step).
-        samples: n of Eq. 22.
+        method: How it infers.
     """
 
-    __slots__ = ("_engine", "base", "samples")
+    __slots__ = ("_engine", "base", "method")
 
-    def __init__(self, base: RuleBase, *, samples: int = 101) -> None:
+    def __init__(self, base: RuleBase, method: Method = USUAL) -> None:
         """Prepare the inference.
 
         If no rule fires, the controller does not turn and takes the smallest step. With Gaussian
         sets that cover their domain this never happens.
 
         Raises:
-            ValueError: If the rules have not two outputs, or ``samples`` is below 3.
+            ValueError: If the rules have not two outputs, or there are fewer than 3 samples.
         """
         if len(base.outputs) != 2:
             raise ValueError(f"{len(base.outputs)} outputs; the controller has a turn and a step")
         self.base = base
-        self.samples = samples
-        self._engine = ProductInference(
-            base, samples=samples, fallback=(0.0, base.outputs[1].domain[0])
+        self.method = method
+        straight = base.outputs[0].clip(0.0)
+        self._engine = MamdaniInference(
+            base, method, fallback=(straight, base.outputs[1].domain[0])
         )
 
     def infer(self, distance: float, difference: float) -> Inference:

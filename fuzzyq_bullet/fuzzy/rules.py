@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from fuzzyq_bullet.fuzzy.sets import Variable
-
-_ROW = re.compile(r"(?P<label>\w+)\s*:\s*(?P<cells>(\[[^\[\]]*\]\s*)*)")
-_CELL = re.compile(r"\[([^\[\]]*)\]")
 
 
 class Rule(NamedTuple):
@@ -77,53 +73,8 @@ class RuleBase:
                     f"it has {', '.join(output.labels)}"
                 )
 
-    @classmethod
-    def parse(
-        cls,
-        table: str,
-        *,
-        row: Variable,
-        column: Variable,
-        outputs: Sequence[Variable],
-        aliases: Sequence[Mapping[str, str]] = (),
-    ) -> RuleBase:
-        """Read a table whose first line names the columns and whose others read ``ROW: [A B] …``.
-
-        Args:
-            table: The text; blank lines and blanks between words do not count.
-            row: The variable that names the rows.
-            column: The variable that names the columns.
-            outputs: The variables that each cell names one label of.
-            aliases: For each output, names that the cells use for its labels; empty if the cells
-                use the labels themselves.
-
-        Raises:
-            ValueError: If rows or columns are not those of the variables in their order, a line
-                does not read so, or the rule base would not be valid.
-        """
-        header, *lines = [line.strip() for line in table.strip().splitlines() if line.strip()]
-        if tuple(header.split()) != column.labels:
-            raise ValueError(f"columns {header!r} are not those of {column.name}: {column.labels}")
-        rows, labels = [], []
-        for line in lines:
-            match = _ROW.fullmatch(line)
-            if match is None:
-                raise ValueError(f"not 'ROW: [label …] …': {line!r}")
-            labels.append(match["label"])
-            rows.append(tuple(_cell(text, aliases) for text in _CELL.findall(match["cells"])))
-        if tuple(labels) != row.labels:
-            raise ValueError(f"rows {labels} are not those of {row.name}: {row.labels}")
-        return cls(row, column, tuple(outputs), tuple(rows))
-
     def __iter__(self) -> Iterator[Rule]:
         """Yield the rules, row by row."""
         for row, cells in zip(self.row.labels, self.cells, strict=True):
             for column, cell in zip(self.column.labels, cells, strict=True):
                 yield Rule(row, column, cell)
-
-
-def _cell(text: str, aliases: Sequence[Mapping[str, str]]) -> tuple[str, ...]:
-    labels = text.split()
-    if not aliases or len(labels) != len(aliases):
-        return tuple(labels)
-    return tuple(names.get(label, label) for names, label in zip(aliases, labels, strict=True))

@@ -1,49 +1,39 @@
-"""Linguistic variables: named Gaussian fuzzy sets over a domain (Eq. 1)."""
+"""Linguistic variables: named fuzzy sets over a domain (Eq. 1)."""
 
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats: TypeAlias = NDArray[np.float64]
-
-_LINE = re.compile(r"(?P<label>\w+)\s+(?P<words>[A-Za-z ]+?)\s*\[\s*(?P<numbers>[^\]]*?)\s*\]")
+from fuzzyq_bullet.fuzzy.memberships import Floats, MembershipFunction
 
 
 @dataclass(frozen=True, slots=True)
 class FuzzySet:
-    """One value of a linguistic variable: exp(−(x − center)² / 2·width²).
+    """One value of a linguistic variable.
 
     Attributes:
         label: Short name by which rules refer to it, such as ``VN``.
+        function: How far a number belongs to it.
         words: The name in words, such as ``Very Near``.
-        width: σ, in the unit of the variable, positive.
-        center: c, where the membership is 1; it may lie outside the domain.
-
-    Raises:
-        ValueError: If the width is not positive or a number is not finite.
+        meaning: What it means to a robot, such as ``very near``.
     """
 
     label: str
-    words: str
-    width: float
-    center: float
+    function: MembershipFunction
+    words: str = ""
+    meaning: str = ""
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.width) and math.isfinite(self.center) and self.width > 0):
-            raise ValueError(
-                f"{self.label}: [{self.width} {self.center}] is not a positive width and a center"
-            )
+        object.__setattr__(self, "words", self.words or self.label)
+        object.__setattr__(self, "meaning", self.meaning or self.words)
 
-    def membership(self, x: float | Floats) -> Floats:
-        """Return the degrees, in (0, 1], to which the values ``x`` belong; the shape of ``x``."""
-        offset = (np.asarray(x, dtype=np.float64) - self.center) / self.width
-        return np.asarray(np.exp(-0.5 * offset**2))
+    @property
+    def center(self) -> float:
+        """Where the membership is 1, in the middle."""
+        return self.function.center
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,40 +62,22 @@ class Variable:
         if len(set(self.labels)) != len(self.labels):
             raise ValueError(f"{self.name}: two sets share a label: {', '.join(self.labels)}")
 
-    @classmethod
-    def parse(cls, name: str, domain: tuple[float, float], table: str) -> Variable:
-        """Read a variable from a table with a line ``LABEL words [width center]`` for each set.
-
-        Raises:
-            ValueError: If a line does not read so, or the variable would not be valid.
-        """
-        sets = []
-        for line in filter(None, map(str.strip, table.splitlines())):
-            match = _LINE.fullmatch(line)
-            try:
-                width, center = map(float, match["numbers"].split() if match else ())
-            except ValueError:
-                raise ValueError(f"{name}: not 'LABEL words [width center]': {line!r}") from None
-            assert match is not None  # without a match there were no two numbers
-            sets.append(FuzzySet(match["label"], match["words"], width, center))
-        return cls(name, domain, tuple(sets))
-
     @property
     def labels(self) -> tuple[str, ...]:
         """The labels of the sets, in order."""
         return tuple(fuzzy_set.label for fuzzy_set in self.sets)
 
-    def words(self, label: str) -> str:
-        """Return the words that ``label`` stands for.
+    def set_of(self, label: str) -> FuzzySet:
+        """Return the set that ``label`` stands for.
 
         Raises:
             KeyError: If the variable has no such label.
         """
-        return {fuzzy_set.label: fuzzy_set.words for fuzzy_set in self.sets}[label]
+        return {fuzzy_set.label: fuzzy_set for fuzzy_set in self.sets}[label]
 
     def memberships(self, x: float | Floats) -> Floats:
         """Return the membership of ``x`` in every set: an axis of sets, then those of ``x``."""
-        return np.stack([fuzzy_set.membership(x) for fuzzy_set in self.sets])
+        return np.stack([fuzzy_set.function.degrees(x) for fuzzy_set in self.sets])
 
     def clip(self, x: float) -> float:
         """Return ``x`` moved to the nearest value of the domain.

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.physics.robot import load_robot
+from fuzzyq_bullet.physics.robot import VisibleRobot
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -208,16 +208,12 @@ class RobotCamera:
         self._lens = lens
         self._oversampling = oversampling
         self._engine = Engine()
-        self._robot = load_robot(self._engine, model, visible=True)
+        self._robot = VisibleRobot(self._engine, model)
         wide, tall = model.radius + _RIM, model.height + _LID
         # Points about the robot (m), base frame: a little wider than its disc, from wheels to lid.
         self._hull = np.array(
             [(wide * math.cos(a), wide * math.sin(a), z) for a in _AROUND for z in (0.0, tall)]
         )
-        # PyBullet places the centre of mass, everything else here speaks of the base frame.
-        self._mass = self._engine.api.getDynamicsInfo(
-            self._robot, -1, physicsClientId=self._engine.client
-        )[3]
 
     def window(self, position: tuple[float, float]) -> Window | None:
         """Return the part of the picture that the robot covers, or None when it is out of sight."""
@@ -232,15 +228,7 @@ class RobotCamera:
 
     def shoot(self, window: Window, position: tuple[float, float], heading: float) -> Picture:
         """Return what ``window`` shows of the robot; the mask holds 0 where it is."""
-        cos, sin = math.cos(heading), math.sin(heading)
-        x, y, z = self._mass
-        centre = (position[0] + x * cos - y * sin, position[1] + x * sin + y * cos, z)
-        self._engine.api.resetBasePositionAndOrientation(
-            self._robot,
-            centre,
-            (0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)),
-            physicsClientId=self._engine.client,
-        )
+        self._robot.place(position, heading)
         return shoot(self._engine, self._lens, window, self._oversampling)
 
     def close(self) -> None:

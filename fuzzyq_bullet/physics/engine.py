@@ -1,4 +1,4 @@
-"""The typed edge around PyBullet: an owned DIRECT client and its settings."""
+"""The typed edge around PyBullet: an owned client and its settings."""
 
 from __future__ import annotations
 
@@ -12,24 +12,30 @@ from typing import Any, NamedTuple
 
 
 @contextmanager
-def _silenced_stderr() -> Iterator[None]:
-    """Keep PyBullet's banner, printed from C on import, off the user's terminal."""
+def silenced(*descriptors: int) -> Iterator[None]:
+    """Keep what PyBullet prints from C off the user's terminal.
+
+    Args:
+        descriptors: 1 for standard output, 2 for standard error.
+    """
     try:
         sys.stderr.flush()
-        saved = os.dup(2)
-    except (OSError, ValueError, AttributeError):  # no stderr to protect
+        saved = {one: os.dup(one) for one in descriptors}
+    except (OSError, ValueError, AttributeError):  # not there, so nothing to protect
         yield
         return
     try:
         with Path(os.devnull).open("w") as null:
-            os.dup2(null.fileno(), 2)
+            for one in saved:
+                os.dup2(null.fileno(), one)
             yield
     finally:
-        os.dup2(saved, 2)
-        os.close(saved)
+        for one, before in saved.items():
+            os.dup2(before, one)
+            os.close(before)
 
 
-with _silenced_stderr():
+with silenced(2):  # its banner
     import pybullet
 
 TIME_STEP = 1.0 / 240.0
@@ -53,15 +59,24 @@ class Contact(NamedTuple):
 
 
 class Engine:
-    """One PyBullet DIRECT client with this project's settings, disconnected when closed.
+    """One PyBullet client with this project's settings, disconnected when closed.
 
     Settings are set anew on every reset, because ``resetSimulation`` forgets some of them and any
     difference breaks determinism.
+
+    Args:
+        window: Options of PyBullet's own window, such as ``--width=640``; by default there is none.
+            A process has one window at most, and ends where it cannot be opened: ask
+            ``platforms.no_screen`` before.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, window: str | None = None) -> None:
         self.api: Any = pybullet
-        self.client: int = pybullet.connect(pybullet.DIRECT)
+        self.client: int = (
+            pybullet.connect(pybullet.DIRECT)
+            if window is None
+            else pybullet.connect(pybullet.GUI, options=window)
+        )
         if self.client < 0:
             raise RuntimeError("PyBullet has no client left; close the worlds no longer in use")
         self.reset()

@@ -107,6 +107,27 @@ class Robot:
         )
 
 
+class VisibleRobot:
+    """A robot to be looked at: it has no motors, and is put from pose to pose."""
+
+    def __init__(self, engine: Engine, model: RobotModel) -> None:
+        self._engine = engine
+        self.body = load_robot(engine, model, visible=True)
+        # PyBullet places the centre of mass, everything else here speaks of the base frame.
+        self._mass = engine.api.getDynamicsInfo(self.body, -1, physicsClientId=engine.client)[3]
+
+    def place(self, position: tuple[float, float], heading: float) -> None:
+        """Put its centre at ``position`` (m), facing ``heading`` (rad)."""
+        cos, sin = math.cos(heading), math.sin(heading)
+        x, y, z = self._mass
+        self._engine.api.resetBasePositionAndOrientation(
+            self.body,
+            (position[0] + x * cos - y * sin, position[1] + x * sin + y * cos, z),
+            (0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)),
+            physicsClientId=self._engine.client,
+        )
+
+
 def load_robot(engine: Engine, model: RobotModel, *, visible: bool = False) -> int:
     """Load a robot from its URDF and return its body id; its visuals only if ``visible``."""
     if model.urdf_file is not None:

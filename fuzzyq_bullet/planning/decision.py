@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.columns import Column, columns_of, documented
+from fuzzyq_bullet.columns import Column, Columns, columns_of, documented
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 Numbers: TypeAlias = Sequence[float] | NDArray[np.float64]
@@ -118,11 +118,14 @@ class DecisionError(ValueError):
     """A planner decided what cannot be carried out, or no decision at all."""
 
 
-def checked(decision: Any) -> Decision:
+def checked(decision: Any, fields: Columns = FIELDS) -> Decision:
     """Return a decision that can be carried out and recorded.
+
+    What explains it may be left at its default, blank, whatever shape it should have.
 
     Args:
         decision: Whatever a planner returned.
+        fields: What is recorded of it.
 
     Returns:
         The same decision; what explains it in tuples, which nobody can change afterwards.
@@ -135,7 +138,7 @@ def checked(decision: Any) -> Decision:
     if not isinstance(decision, Decision):
         raise DecisionError(f"returned {_kind(decision)} instead of a Decision")
     told: dict[str, Any] = {}
-    for (name, column), value in zip(FIELDS.items(), decision, strict=False):
+    for (name, column), value in zip(fields.items(), decision, strict=False):
         if column.bounds is not None:
             if not (column.endless and value == math.inf):
                 _within(name, value, column)
@@ -143,10 +146,16 @@ def checked(decision: Any) -> Decision:
             if not isinstance(value, str) or value not in column.words:
                 raise DecisionError(f"decided the {name}: {not_one_of(name, value, column.words)}")
         else:
-            told[name] = _explaining(name, value, column.shape)
+            blank = value is Decision._field_defaults.get(name)
+            told[name] = _blank(column.shape) if blank else _explaining(name, value, column.shape)
     if not isinstance(decision.hopeless, bool | np.bool_):
         raise DecisionError(f"decided hopeless {_shown(decision.hopeless)}, not True or False")
     return decision._replace(**told)
+
+
+def _blank(shape: tuple[int, ...]) -> Any:
+    """Return NaN, or tuples of it in this shape."""
+    return (_blank(shape[1:]),) * shape[0] if shape else _NAN
 
 
 def _within(name: str, value: Any, column: Column) -> None:

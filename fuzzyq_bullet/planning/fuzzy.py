@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from fuzzyq_bullet.fuzzy.inference import Inference
-from fuzzyq_bullet.fuzzy.paper import paper_controller
 from fuzzyq_bullet.planning.aim import Aim, towards_goal
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, STEP_UNIT, Observation
+from fuzzyq_bullet.planning.controllers import controller_of
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.settings import FuzzySettings, RoutineSettings
 
@@ -60,11 +60,7 @@ class Routine:
 
     def __init__(self, settings: RoutineSettings) -> None:
         self._settings = settings
-        self._controller = (
-            None
-            if settings.rules == "none"
-            else paper_controller(rules=settings.rules, samples=settings.samples)
-        )
+        self._controller = controller_of(settings)
 
     def sense(self, observation: Observation, aim: Aim | None = None) -> Situation:
         """Cast the three lines (Steps 4 to 6) and ask the controller (Step 9; Eqs. 13, 14).

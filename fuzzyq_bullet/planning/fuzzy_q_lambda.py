@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.fuzzy.inference import Inference
-from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE
+from fuzzyq_bullet.fuzzy import ControllerDefinition, Inference
+from fuzzyq_bullet.fuzzy.rules import RuleBase
 from fuzzyq_bullet.learning import Policy, PolicySpec, greedy
 from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.controllers import controller_shown
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.learned_exits import LEARNER, LearnedExits, seconds_of
@@ -48,17 +49,30 @@ STEPS = (5.0, 20.0)
 TURNS = (0.0, 0.25, 0.5)
 CHOICES = tuple(Weights(*one) for one in product(STEPS, TURNS))
 CHOICE_NAMES = tuple(f"ω1 {one.step:g}, ω2 {one.turn:g}" for one in CHOICES)
-RULE_NAMES = tuple(f"{near} {side}" for near, side in product(DISTANCE.labels, DIFFERENCE.labels))
-"""Row by row of Table 4: what d is, then what Df is."""
-TWINS = tuple(
-    row * len(DIFFERENCE.sets) + column
-    for row in range(len(DISTANCE.sets))
-    for column in reversed(range(len(DIFFERENCE.sets)))
-)
-"""The mirror image of each rule: what stood on the left is as good as what stood on the right."""
 
-POLICY_SPEC = PolicySpec("fuzzy-q-lambda", RULE_NAMES, CHOICE_NAMES, "fuzzy-q-lambda")
-"""What its policies look like."""
+
+def rule_names(base: RuleBase) -> tuple[str, ...]:
+    """Return a name for each rule, row by row of the table: what d is, then what Df is."""
+    return tuple(f"{near} {side}" for near, side in product(base.row.labels, base.column.labels))
+
+
+def twins_of(base: RuleBase) -> tuple[int, ...]:
+    """Return the number of each rule's mirror image.
+
+    What stood on the left is as good as what stood on the right: the set of the difference that
+    lies furthest to one side stands for that which lies furthest to the other.
+    """
+    columns = range(len(base.column.sets))
+    by_center = sorted(columns, key=lambda column: base.column.sets[column].center)
+    opposite = dict(zip(by_center, reversed(by_center), strict=True))
+    rows = range(len(base.row.sets))
+    return tuple(row * len(columns) + opposite[column] for row in rows for column in columns)
+
+
+def policy_spec(settings: FuzzyQLambdaSettings) -> PolicySpec:
+    """Return what its policies look like: a row for each rule."""
+    names = rule_names(controller_shown(settings).base)
+    return PolicySpec("fuzzy-q-lambda", names, CHOICE_NAMES, "fuzzy-q-lambda")
 
 
 def firing(inferred: Inference) -> NDArray[np.float64]:
@@ -68,14 +82,20 @@ def firing(inferred: Inference) -> NDArray[np.float64]:
     return strengths / total if total > 0.0 else np.full(strengths.size, 1.0 / strengths.size)
 
 
-def learned_policy(file: str | None) -> Policy:
+def learned_policy(file: str | None, rules: ControllerDefinition | None = None) -> Policy:
     """Return the policy in a file, or without one that which is shipped.
+
+    Args:
+        file: The policy.
+        rules: The rules that it weighs; by default those of Table 4.
 
     Raises:
         UserError: If there is none, or none of this planner.
     """
     try:
         settings = FuzzyQLambdaSettings(policy=file)
+        if rules is not None:
+            settings = settings.model_copy(update={"rules": rules})
     except ValidationError as error:
         why = error.errors(include_url=False)[0]["msg"]
         raise UserError(f"policy: {shorten(file)}: {why}") from error
@@ -83,7 +103,7 @@ def learned_policy(file: str | None) -> Policy:
         raise UserError(
             f"{file}: tells what the ways out of a field are worth, not how rules weigh"
         )
-    return policy_of(settings, POLICY_SPEC)
+    return rule_policy(settings)
 
 
 def rule_policy(settings: FuzzyQLambdaSettings) -> Policy:
@@ -94,7 +114,14 @@ def rule_policy(settings: FuzzyQLambdaSettings) -> Policy:
     """
     if field_policy(settings) is not None:
         settings = settings.model_copy(update={"policy": None})
-    return policy_of(settings, POLICY_SPEC)
+    spec = policy_spec(settings)
+    if settings.policy is None and spec.states != policy_spec(FuzzyQLambdaSettings()).states:
+        raise UserError(
+            "the shipped policy weighs rules with the labels of Table 4; learn with these: "
+            "fuzzyq train fuzzy-q-lambda --rules FILE, and name the policy; or drive them with "
+            "improved-fuzzy"
+        )
+    return policy_of(settings, spec)
 
 
 def field_policy(settings: PlannerSettings) -> Policy | None:

@@ -3,12 +3,35 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, TypeAlias
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, Strict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict
+from pydantic_core import PydanticCustomError
+
+from fuzzyq_bullet.fuzzy.definition import ControllerDefinition, Samples
+from fuzzyq_bullet.fuzzy.paper import RULE_TABLES
 
 _Number: TypeAlias = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 Weight: TypeAlias = Annotated[_Number, Field(gt=0.0, le=20.0)]
+NO_CONTROLLER = "none"
+RULE_WORDS = (*RULE_TABLES, NO_CONTROLLER)
+"""What ``rules`` may say beside a controller or, in files, the path of one."""
+
+
+def _choose_rules(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return ControllerDefinition.model_validate(value)
+    if not isinstance(value, ControllerDefinition) and value not in RULE_WORDS:
+        raise PydanticCustomError(
+            "rules",
+            "must be {words}, or a controller; fuzzyq_bullet.fuzzy.load_controller reads one",
+            {"words": ", ".join(RULE_WORDS)},
+        )
+    return value
+
+
+Rules: TypeAlias = Annotated[str | ControllerDefinition, BeforeValidator(_choose_rules)]
 BreakoutAt: TypeAlias = Annotated[_Number, Field(gt=0.0, le=5.0)]
 
 
@@ -39,13 +62,16 @@ class RoutineSettings(PlannerSettings):
         description="Where d = 5 and Df = 0: with the middle line free up to the aim (the paper), "
         "or as far as the robot sees.",
     )
-    rules: Literal["corrected", "printed", "none"] = Field(
+    rules: Rules = Field(
         default="corrected",
         description="Table 4 with its two misprints mended, or as printed; none: no controller, "
-        "straight to the aim with N_s = 2.",
+        "straight to the aim with N_s = 2. Or rules and sets of one's own: a .yaml, .fll or .fis "
+        "file, relative to that of the scenario, or what such a file says.",
     )
-    samples: Annotated[int, Strict(), Field(ge=3, le=10_001)] = Field(
-        default=101, description="n of Eq. 22: points of the centroid. The paper says 5."
+    samples: Samples | None = Field(
+        default=None,
+        description="n of Eq. 22: points of the centroid; by default as the rules say, 101 for "
+        "Table 4. The paper says 5.",
     )
 
 

@@ -12,26 +12,26 @@ import yaml
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.files import read_bytes, written_beside
+from fuzzyq_bullet.files import read_text, written_beside
+from fuzzyq_bullet.planning.controllers import rules_named
 from fuzzyq_bullet.planning.fuzzy_q_lambda import field_policy
-from fuzzyq_bullet.planning.registry import make_planner
-from fuzzyq_bullet.planning.settings import PolicySettings
+from fuzzyq_bullet.planning.registry import (
+    DEFAULT_PLANNER,
+    make_planner,
+    planner_names,
+    settings_for,
+)
+from fuzzyq_bullet.planning.settings import PolicySettings, RoutineSettings
 from fuzzyq_bullet.platforms import data_folder
+from fuzzyq_bullet.problems import Problem, lines_of
 from fuzzyq_bullet.quantities import MAX_OBSTACLES
 from fuzzyq_bullet.scenario.checks import find_conflicts
 from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import Scenario
-from fuzzyq_bullet.scenario.problems import (
-    MAX_SHOWN,
-    MAX_WORDED,
-    Loc,
-    Problem,
-    key_path,
-    problems_of,
-)
-from fuzzyq_bullet.scenario.yaml_tree import Node, read_tree
+from fuzzyq_bullet.scenario.problems import MAX_WORDED, problems_of
 from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
+from fuzzyq_bullet.yaml_tree import Node, read_tree
 
 Source: TypeAlias = "str | os.PathLike[str]"
 
@@ -53,7 +53,12 @@ def load_scenario(source: Source, *, policies: bool = True) -> Scenario:
             ``path:line: key.path: what is wrong; what is allowed``.
     """
     path = find_scenario(source)
-    return parse_scenario(_read(path), str(path), folder=path.parent, policies=policies)
+    return parse_scenario(
+        _read(path),
+        str(path),
+        folder=path.parent,
+        policies=policies,
+    )
 
 
 def parse_scenario(
@@ -86,8 +91,9 @@ def parse_scenario(
             f"{where}:{line}: obstacles: must have at most {MAX_OBSTACLES} values, got {len(given)}"
         )
     more = 0
+    data = _with_rules_in(tree, folder or Path(), where)
     try:
-        scenario = Scenario.model_validate(tree.data)
+        scenario = Scenario.model_validate(data)
     except ValidationError as error:
         problems = problems_of(error, tree.data)
         more = max(0, error.error_count() - MAX_WORDED)
@@ -106,7 +112,7 @@ def parse_scenario(
             problems += [unfit] if unfit else []
         if not problems:
             return scenario
-    raise UserError(*_lines(problems, more, tree, where))
+    raise UserError(*lines_of(problems, more, tree, where))
 
 
 def _refuse_unwritable(scenario: Scenario, where: str) -> None:
@@ -121,6 +127,30 @@ def _refuse_unwritable(scenario: Scenario, where: str) -> None:
         raise UserError(
             f"{where}: planner: its settings cannot be written as JSON: {error_in_words(error)}"
         ) from error
+
+
+def _with_rules_in(tree: Node, folder: Path, where: str) -> dict[str, Any]:
+    """Return the data of a scenario with the rules that its planner names in a file.
+
+    So the record of a run holds them.
+
+    Raises:
+        UserError: If that file cannot be read, or is wrong.
+    """
+    data: dict[str, Any] = tree.data
+    planner = data.get("planner")
+    if not isinstance(planner, dict) or not isinstance(planner.get("rules"), str):
+        return data
+    name = planner.get("name", DEFAULT_PLANNER)
+    if name not in planner_names() or not issubclass(settings_for(name), RoutineSettings):
+        return data
+    try:
+        rules = rules_named(planner["rules"], folder)
+    except UserError as error:
+        inner = tree.children["planner"]
+        line = f"{where}:{inner.line_of('rules')}: planner.rules: "
+        raise UserError(line + error.problems[0], *error.problems[1:]) from error
+    return {**data, "planner": {**planner, "rules": rules}}
 
 
 def _with_policy_in(scenario: Scenario, folder: Path) -> Scenario:
@@ -230,50 +260,16 @@ def problem_lines(source: Source, problems: list[Problem]) -> list[str]:
     if not problems:
         return []
     path = find_scenario(source)
-    return _lines(problems, 0, read_tree(_read(path), str(path)), str(path))
+    return lines_of(
+        problems,
+        0,
+        read_tree(_read(path), str(path)),
+        str(path),
+    )
 
 
 def _read(path: Path) -> str:
-    content = read_bytes(path, what="a scenario", most=MAX_BYTES)
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise UserError(f"{path}:{line}: is not UTF-8 text") from error
-
-
-def _lines(problems: list[Problem], more: int, tree: Node, where: str) -> list[str]:
-    """Return the printed lines of the problems, in the order of the file's lines.
-
-    ``more`` is the number of problems beside those given.
-    """
-    told = []
-    for problem in problems:
-        line, shown = _locate(problem, tree)
-        told.append((line, f"{where}:{line}: {key_path(shown)}: {problem.message}"))
-    told.sort(key=lambda entry: entry[0])
-    lines = [text for _, text in told[:MAX_SHOWN]]
-    more += max(0, len(told) - MAX_SHOWN)
-    if more:
-        lines.append(f"{where}: and {more} more")
-    return lines
-
-
-def _locate(problem: Problem, tree: Node) -> tuple[int, Loc]:
-    """Return the line of a problem and its path in the file.
-
-    A key that is absent is shown behind the mapping that should hold it, on that one's line.
-    Parts that pydantic adds and the file does not have are passed over, unless it has none of them.
-    """
-    node, line, shown = tree, tree.line, ()  # type: Node, int, Loc
-    for i, part in enumerate(problem.loc):
-        if part in node.children:
-            line = node.line_of(part)
-            node = node.children[part]
-            shown += (part,)
-        elif problem.missing and i == len(problem.loc) - 1:
-            shown += (part,)
-    return line, shown or problem.loc
+    return read_text(path, what="a scenario", most=MAX_BYTES)
 
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")

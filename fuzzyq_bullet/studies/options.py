@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, get_args
 
@@ -11,18 +12,26 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import hash_of
 from fuzzyq_bullet.planning import (
     PlannerSettings,
-    fuzzy_q_lambda,
     planner_names,
-    q_learning,
     settings_for,
 )
+from fuzzyq_bullet.planning.controllers import rules_named
+from fuzzyq_bullet.planning.fuzzy_q_lambda import policy_spec, rule_policy
 from fuzzyq_bullet.planning.policies import policy_of
+from fuzzyq_bullet.planning.q_learning import POLICY_SPECS
 from fuzzyq_bullet.planning.registry import no_planner
-from fuzzyq_bullet.planning.settings import PolicySettings, QLambdaSettings, QLearningSettings
+from fuzzyq_bullet.planning.settings import (
+    FuzzyQLambdaSettings,
+    PolicySettings,
+    QLambdaSettings,
+    QLearningSettings,
+    RoutineSettings,
+)
 from fuzzyq_bullet.scenario import MAX_OBSTACLES, Drive
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 NONE = "none"
+RULES_HELP = "Rules of your own for the planners that have some: a file (docs/rules.md)."
 PAPER = ("fuzzy", "improved-fuzzy", "q-learning", "q-lambda", "fuzzy-q-lambda")
 """The planners of Fig. 13 and Table 5, in the order in which they are shown."""
 GUARDED = {
@@ -37,7 +46,6 @@ POSITIONAL = {
 """The direct planners with a table of places, learned in each environment before it is driven."""
 VARIANTS: Mapping[str, PlannerSettings] = {**GUARDED, **POSITIONAL}
 """What studies know beside the planners themselves."""
-_EXPECTED = {**q_learning.POLICY_SPECS, "fuzzy-q-lambda": fuzzy_q_lambda.POLICY_SPEC}
 
 
 def counts_of(text: str, option: str) -> tuple[int, ...]:
@@ -124,14 +132,45 @@ def planner_of(name: str, weights: str | None) -> PlannerSettings:
         raise UserError(f"--weights: must be two numbers such as 1,1, got {weights!r}") from error
 
 
-def planners_of(names: str | Iterable[str]) -> dict[str, PlannerSettings]:
+def with_rules(settings: PlannerSettings, rules: str | None) -> PlannerSettings:
+    """Return the settings with rules of the user's own, where the planner has rules.
+
+    Args:
+        settings: The planner's.
+        rules: A file, or one of ``RULE_WORDS``; JSON, if a study tells it from its folder. None
+            leaves the settings as they are.
+
+    Raises:
+        UserError: If the rules are wrong, or the planner has a policy that does not fit them.
+    """
+    if rules is None or "rules" not in type(settings).model_fields:
+        return settings
+    try:
+        found = json.loads(rules) if rules.startswith("{") else rules_named(rules)
+        given = type(settings).model_validate({**settings.model_dump(), "rules": found})
+        if isinstance(given, FuzzyQLambdaSettings):
+            rule_policy(given)
+    except UserError as error:
+        raise UserError(f"--rules: {error.problems[0]}", *error.problems[1:]) from error
+    return given
+
+
+def rules_told(settings: Mapping[str, Any]) -> str | None:
+    """Return the rules of a planner, as a study's plan tells it, as ``with_rules`` takes them."""
+    rules = settings.get("rules")
+    usual = rules is None or rules == RoutineSettings.model_fields["rules"].default
+    return None if usual else rules if isinstance(rules, str) else json.dumps(rules)
+
+
+def planners_of(names: str | Iterable[str], rules: str | None = None) -> dict[str, PlannerSettings]:
     """Return planners as they are set by default, each once, by their names.
 
     Args:
         names: Such as ``fuzzy,q-learning``; those of ``VARIANTS`` are known too.
+        rules: Rules of the user's own, for those that have rules.
 
     Raises:
-        UserError: If there is no such planner.
+        UserError: If there is no such planner, or the rules do not fit.
     """
     chosen: dict[str, PlannerSettings] = {}
     for part in names.split(",") if isinstance(names, str) else names:
@@ -140,7 +179,8 @@ def planners_of(names: str | Iterable[str]) -> dict[str, PlannerSettings]:
             every = (*planner_names(), *VARIANTS)
             raise UserError(f"--planners: {not_one_of('planner', name, every)}")
         usual = VARIANTS.get(name)
-        chosen[name] = usual or settings_for(name).model_validate({"name": name})
+        settings = usual or settings_for(name).model_validate({"name": name})
+        chosen[name] = with_rules(settings, rules)
     return chosen
 
 
@@ -169,6 +209,8 @@ def _described(label: str, settings: PlannerSettings) -> dict[str, Any]:
     told = settings.model_dump(mode="json")
     if label in POSITIONAL:
         return told  # it learns what it needs by itself
-    if isinstance(settings, PolicySettings) and settings.name in _EXPECTED:
-        told["policy"] = hash_of(policy_of(settings, _EXPECTED[settings.name]))
+    if isinstance(settings, FuzzyQLambdaSettings):
+        told["policy"] = hash_of(policy_of(settings, policy_spec(settings)))
+    elif isinstance(settings, PolicySettings) and settings.name in POLICY_SPECS:
+        told["policy"] = hash_of(policy_of(settings, POLICY_SPECS[settings.name]))
     return told

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import get_args
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.fuzzy import ControllerDefinition, load_controller
 from fuzzyq_bullet.learning.policy import MAX_WORDS
 from fuzzyq_bullet.learning.training import MAX_EPISODES
 from fuzzyq_bullet.planning import planner_names, settings_for
@@ -18,7 +19,7 @@ from fuzzyq_bullet.scenario import load_scenario, realise
 from fuzzyq_bullet.scenario.models import Drive
 from fuzzyq_bullet.training.field import FieldTask
 from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
-from fuzzyq_bullet.training.registry import RECIPES, recipe_of, refuse_unfit
+from fuzzyq_bullet.training.registry import RECIPES, Recipe, recipe_of, refuse_unfit
 from fuzzyq_bullet.training.tasks import MOST_SEED, Tasks
 from fuzzyq_bullet.wording import did_you_mean, not_one_of, shorten
 
@@ -38,6 +39,7 @@ class TrainingConfig:
         scenario: Path or name of the scenario to learn on; None for random scenarios.
         options: What it does otherwise than the planner usually learns.
         plugins: Modules of the user's own that it needs.
+        rules: File of the rules that it learns to weigh; None for Table 4.
     """
 
     planner: str
@@ -47,6 +49,24 @@ class TrainingConfig:
     scenario: str | None = None
     options: LearningOptions = AS_USUAL
     plugins: tuple[str, ...] = ()
+    rules: str | None = None
+
+    @property
+    def recipe(self) -> Recipe:
+        """How the planner learns, with these rules."""
+        recipe, definition = recipe_of(self.planner), self.definition
+        if definition is None or recipe.with_rules is None:
+            return recipe
+        return recipe.with_rules(definition)
+
+    @property
+    def definition(self) -> ControllerDefinition | None:
+        """The rules of the user's own.
+
+        Raises:
+            UserError: If they cannot be used.
+        """
+        return None if self.rules is None else load_controller(self.rules)
 
     @property
     def command(self) -> str:
@@ -58,6 +78,8 @@ class TrainingConfig:
         parts += ["--drive", self.drive, "--seed", str(self.seed)]
         if self.scenario is not None:
             parts += ["--scenario", self.scenario]
+        if self.rules is not None:
+            parts += ["--rules", self.rules]
         parts += self.options.words()
         return shlex.join([*parts, *(word for name in self.plugins for word in ("--plugin", name))])
 
@@ -81,6 +103,7 @@ def config_for(
     scenario: str | None,
     options: LearningOptions = AS_USUAL,
     plugins: Sequence[str] = (),
+    rules: str | None = None,
 ) -> TrainingConfig:
     """Return what is asked for by the options of a command.
 
@@ -93,6 +116,7 @@ def config_for(
         scenario: What it learns on; None for random fields.
         options: How.
         plugins: Modules of the user's own that it needs.
+        rules: File of the rules that it learns to weigh.
 
     Raises:
         UserError: If any of it is not allowed; names the option.
@@ -103,6 +127,10 @@ def config_for(
         hint = "" if known else did_you_mean(planner, RECIPES)
         raise UserError(f"PLANNER: {what}; {hint}those that learn: {', '.join(RECIPES)}")
     recipe = RECIPES[planner]
+    if rules is not None:
+        if recipe.with_rules is None:
+            raise UserError(f"--rules: {planner} has no rules")
+        recipe.with_rules(load_controller(rules))
     field = None
     if scenario is not None and recipe.in_field is not None:
         field = load_scenario(scenario, policies=False)
@@ -122,14 +150,14 @@ def config_for(
     for known_drive in drives:
         if drive == known_drive:
             config = TrainingConfig(
-                planner, episodes, known_drive, seed, scenario, options, tuple(plugins)
+                planner, episodes, known_drive, seed, scenario, options, tuple(plugins), rules
             )
             break
     else:
         raise UserError(f"--drive: {not_one_of('drive', drive, sorted(drives))}")
     if len(config.command.encode("utf-8", "backslashreplace")) > MAX_WORDS:
         raise UserError(
-            "--scenario, --plugin: their paths are too long for the policy to hold: "
+            "--scenario, --rules, --plugin: their paths are too long for the policy to hold: "
             f"{shorten(config.command)}"
         )
     return config
@@ -141,12 +169,15 @@ def tasks_for(config: TrainingConfig) -> Tasks | FieldTask:
     Raises:
         UserError: If the scenario is wrong.
     """
-    recipe = recipe_of(config.planner)
+    recipe = config.recipe
     if config.scenario is None:
         return recipe.tasks(config.drive, config.seed)
     asked = load_scenario(config.scenario, policies=False)
-    # The planner that learns takes the place of the scenario's own, of which nothing is used.
-    settings = settings_for(config.planner).model_validate({"name": config.planner})
+    # The planner that learns takes the place of the scenario's own, of which only the rules are
+    # used.
+    own = config.definition or getattr(asked.planner, "rules", None)
+    given = {"rules": own} if recipe.with_rules and isinstance(own, ControllerDefinition) else {}
+    settings = settings_for(config.planner).model_validate({"name": config.planner, **given})
     asked = asked.model_copy(update={"planner": settings})
     if recipe.in_field is not None:
         field = realise(asked, config.seed)

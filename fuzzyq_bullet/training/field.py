@@ -27,6 +27,7 @@ from pathlib import Path
 import numpy as np
 
 from fuzzyq_bullet.episode import run_in, world_of
+from fuzzyq_bullet.fuzzy import ControllerDefinition
 from fuzzyq_bullet.learning import Policy, Setup, hash_of
 from fuzzyq_bullet.learning.checkpoint import ROW, SUCCESS, Checkpoint, Curve
 from fuzzyq_bullet.learning.learners import Floats
@@ -72,6 +73,14 @@ class FieldTask:
 
     scenario: Scenario
 
+    @property
+    def settings(self) -> FuzzyQLambdaSettings:
+        """The planner that learns, with the rules that the scenario gives its own."""
+        given = getattr(self.scenario.planner, "rules", None)
+        if isinstance(given, ControllerDefinition):
+            return FuzzyQLambdaSettings(rules=given)
+        return FuzzyQLambdaSettings()
+
     def digest(self) -> str:
         """Return a hash of the field."""
         return field_digest(self.scenario)
@@ -100,7 +109,7 @@ class FieldMemory:
 
     def drive(self, task: FieldTask, world: SensorWorld) -> tuple[Trajectory, list[Choice]]:
         """Return one run with the table as it is, and what was chosen in it."""
-        planner = FuzzyQLambdaPlanner(FuzzyQLambdaSettings())
+        planner = FuzzyQLambdaPlanner(task.settings)
         exits = LearnedExits(self.seconds)
         planner.choose_exits_by(exits.judge)
         return run_in(world, task.scenario, planner), exits.choices
@@ -255,4 +264,7 @@ def _depends_on(task: FieldTask) -> dict[str, str]:
 
     That is the field, where and how it is driven, and the weights of the rules.
     """
-    return {"run": task.run_digest(), "rules": hash_of(rule_policy(FuzzyQLambdaSettings()))}
+    settings = task.settings
+    told = {"run": task.run_digest(), "rules": hash_of(rule_policy(settings))}
+    own = settings.rules
+    return told if isinstance(own, str) else {**told, "controller": own.digest()}

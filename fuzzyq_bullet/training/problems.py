@@ -22,7 +22,7 @@ from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.fuzzy_q_lambda import CHOICES, firing, weighed
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.q_learning import act, sense
-from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
+from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, PlannerSettings
 from fuzzyq_bullet.scenario.models import Limits, Start
 from fuzzyq_bullet.training.rewards import USUAL, Reward, RewardSettings, Transition
 from fuzzyq_bullet.training.tasks import Tasks
@@ -44,6 +44,7 @@ class TrainingEpisode:
         true_progress: Whether progress is measured along the true shortest path, which no planner
             knows, instead of the straight line to the goal.
         reward: What a decision earns.
+        planner: Settings of the planner that drives, if not those of the tasks.
     """
 
     def __init__(
@@ -53,9 +54,11 @@ class TrainingEpisode:
         hits_end: bool = True,
         true_progress: bool = False,
         reward: RewardSettings = USUAL,
+        planner: PlannerSettings | None = None,
     ) -> None:
         self._tasks = tasks
         self._reward = reward
+        self._planner = planner
         self._hits_end = hits_end
         self._true_progress = true_progress
         self._engine: Engine | None = None
@@ -64,7 +67,10 @@ class TrainingEpisode:
         """Begin an episode, counted from 1."""
         if self._engine is None:
             self._engine = Engine()
-        self._scenario = scenario = self._tasks.scenario_of(episode)
+        scenario = self._tasks.scenario_of(episode)
+        if self._planner is not None:
+            scenario = scenario.model_copy(update={"planner": self._planner})
+        self._scenario = scenario
         self._world = World(
             scenario.obstacles, scenario.arena, engine=self._engine, model=scenario.robot.spec
         )
@@ -185,18 +191,27 @@ class RuleWeightsProblem:
 
     Args:
         tasks: Where it is learned.
+        settings: The planner's, with the rules that it weighs.
         discount: γ.
         reward: What a decision earns.
     """
 
-    def __init__(self, tasks: Tasks, *, discount: float, reward: RewardSettings = USUAL) -> None:
-        self._episode = TrainingEpisode(tasks, true_progress=True, reward=reward)
+    def __init__(
+        self,
+        tasks: Tasks,
+        *,
+        settings: FuzzyQLambdaSettings,
+        discount: float,
+        reward: RewardSettings = USUAL,
+    ) -> None:
+        self._episode = TrainingEpisode(tasks, true_progress=True, reward=reward, planner=settings)
+        self._settings = settings
         self._discount = discount
 
     def reset(self, episode: int, /) -> Floats:
         """Begin an episode."""
         self._episode.begin(episode)
-        self._planner = ImprovedFuzzyBase(FuzzyQLambdaSettings())
+        self._planner = ImprovedFuzzyBase(self._settings)
         self._planner.know(self._episode.to_goal)
         self._look()
         return firing(self._situation.inferred)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.fuzzy import ControllerDefinition
 from fuzzyq_bullet.learning import (
     FuzzyQLambda,
     Learner,
@@ -23,9 +24,10 @@ from fuzzyq_bullet.learning import (
     train,
 )
 from fuzzyq_bullet.learning.checkpoint import Curve
-from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC as RULE_WEIGHTS
-from fuzzyq_bullet.planning.fuzzy_q_lambda import TWINS
+from fuzzyq_bullet.planning.controllers import controller_shown
+from fuzzyq_bullet.planning.fuzzy_q_lambda import policy_spec, twins_of
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS as DIRECT
+from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.scenario import Drive, Scenario
 from fuzzyq_bullet.training.field import RUNS, field_setup, learn_field
 from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
@@ -79,6 +81,7 @@ class Recipe:
         cellular: Whether it learns in corridors of clumped pillars too.
         in_field: How it learns a single field instead, where a scenario is given; None: as it
             learns everywhere.
+        with_rules: Returns how it learns with rules of the user's own; None if it has no rules.
     """
 
     planner: str
@@ -89,6 +92,7 @@ class Recipe:
     counts: tuple[int, ...] = COUNTS
     cellular: bool = False
     in_field: FieldLearning | None = None
+    with_rules: Callable[[ControllerDefinition], Recipe] | None = None
 
     @property
     def of_field(self) -> FieldLearning:
@@ -155,17 +159,21 @@ for _planner, _learner in (("q-learning", QLearning), ("q-lambda", QLambda)):
             setup=_paper_setup,
         )
     )
-register_recipe(
-    Recipe(
-        planner="fuzzy-q-lambda",
-        spec=RULE_WEIGHTS,
-        problem=partial(RuleWeightsProblem, discount=UNDISCOUNTED),
+
+
+def _rule_weights(settings: FuzzyQLambdaSettings) -> Recipe:
+    """Return how the rules of a controller learn their weights."""
+    spec = policy_spec(settings)
+    return Recipe(
+        planner=settings.name,
+        spec=spec,
+        problem=partial(RuleWeightsProblem, settings=settings, discount=UNDISCOUNTED),
         learner=partial(
             FuzzyQLambda,
-            *RULE_WEIGHTS.shape,
+            *spec.shape,
             discount=UNDISCOUNTED,
             kind="replacing",
-            twins=TWINS,
+            twins=twins_of(controller_shown(settings).base),
             patience=PATIENCE,
         ),
         setup=lambda episodes, seed: Setup(
@@ -174,8 +182,11 @@ register_recipe(
         counts=ALL_COUNTS,
         cellular=True,
         in_field=FieldLearning(learn_field, field_setup, RUNS, ("rate", "trace")),
+        with_rules=lambda rules: _rule_weights(FuzzyQLambdaSettings(rules=rules)),
     )
-)
+
+
+register_recipe(_rule_weights(FuzzyQLambdaSettings()))
 
 
 def recipe_of(planner: str) -> Recipe:
@@ -196,6 +207,7 @@ def learn(
     *,
     command: str,
     options: LearningOptions = AS_USUAL,
+    rules: ControllerDefinition | None = None,
     checkpoint: Path | None = None,
     resume: bool = False,
     on_episode: Callable[[Curve], None] | None = None,
@@ -208,6 +220,7 @@ def learn(
         setup: For how long, and how fast.
         command: What to type to do this again; the policy keeps it.
         options: Discount and reward, if others than usual.
+        rules: The rules that the recipe is for, if they are not the paper's.
         checkpoint: Where to keep how far it is after every episode.
         resume: Whether to go on from there.
         on_episode: Called after every episode with the learning curve so far.
@@ -222,6 +235,8 @@ def learn(
     made = {"planner": recipe.planner, "drive": tasks.drive, "tasks": tasks.digest()}
     if options.reward is not None:
         made["reward"] = str(options.reward)
+    if rules is not None:
+        made["rules"] = rules.digest()
     curve = train(
         problem,
         learner,
@@ -232,8 +247,7 @@ def learn(
         on_episode=on_episode,
     )
     described = {**setup.describe(), **learner.describe()}
-    if options.reward is not None:
-        described["reward"] = made["reward"]
+    described |= {key: made[key] for key in ("reward", "rules") if key in made}
     policy = Policy(
         planner=recipe.planner,
         learner=str(described.pop("learner")),

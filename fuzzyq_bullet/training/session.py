@@ -15,7 +15,7 @@ from fuzzyq_bullet.learning.policy import load_policy
 from fuzzyq_bullet.metrics import shortest_length
 from fuzzyq_bullet.training.config import TrainingConfig
 from fuzzyq_bullet.training.field import FieldTask
-from fuzzyq_bullet.training.registry import learn, recipe_of
+from fuzzyq_bullet.training.registry import learn
 from fuzzyq_bullet.training.tasks import Tasks
 from fuzzyq_bullet.version import __version__
 
@@ -176,7 +176,7 @@ def learn_policy(
     resume: bool,
 ) -> Curve:
     """Train, write the policy, and return the learning curve."""
-    recipe, options = recipe_of(config.planner), config.options
+    recipe, options = config.recipe, config.options
     if isinstance(tasks, FieldTask):
         policy, curve = recipe.of_field.learn(
             tasks,
@@ -192,6 +192,7 @@ def learn_policy(
             tasks,
             options.setup(recipe.setup(config.episodes, config.seed)),
             options=options,
+            rules=config.definition,
             command=config.command,
             checkpoint=files.checkpoint,
             resume=resume,

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 _CHUNK = 400
 """Obstacles of one mesh: PyBullet holds at most 131072 corners a shape."""
+EVERYWHERE: Floats = 1e3 * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+"""A piece of ground (m) that holds every arena, for who can look at all of it."""
+_CIRCLE = np.stack([f(np.linspace(0.0, math.tau, 32, endpoint=False)) for f in (np.cos, np.sin)], 1)
 _DOWN = 0.05
 """Solids reach a little below the ground, so that no gap shows between the two (m)."""
 
@@ -84,12 +87,12 @@ def solids(
     ground: Floats, obstacles: Sequence[Floats], walls: Sequence[Floats], goal: Mesh
 ) -> list[Mesh]:
     """Return all meshes, the ground first."""
-    meshes = [_prisms([ground], -_DOWN, 0.0, style.GROUND)] if len(ground) >= 3 else []
+    meshes = [prisms([ground], -_DOWN, 0.0, style.GROUND)] if len(ground) >= 3 else []
     if walls:
-        meshes.append(_prisms(walls, -_DOWN, WALL_HEIGHT, style.WALL))
+        meshes.append(prisms(walls, -_DOWN, WALL_HEIGHT, style.WALL))
     for k in range(0, len(obstacles), _CHUNK):
         part = obstacles[k : k + _CHUNK]
-        meshes.append(_prisms(part, -_DOWN, OBSTACLE_HEIGHT, style.OBSTACLE))
+        meshes.append(prisms(part, -_DOWN, OBSTACLE_HEIGHT, style.OBSTACLE))
     return [*meshes, goal]
 
 
@@ -113,13 +116,24 @@ def flag(position: tuple[float, float], lens: Lens, scale: float) -> Mesh:
     return Mesh(np.array(vertices), normals, np.array(triangles), style.GOAL)
 
 
+def goal_disc(scenario: Scenario) -> Mesh:
+    """Return the goal as a thin disc on the ground."""
+    goal = scenario.goal
+    return prisms([np.add(goal.position, goal.radius * _CIRCLE)], 0.0, 0.01, style.GOAL)
+
+
+def pole(position: tuple[float, float], height: float) -> Mesh:
+    """Return a pole of the goal's colour, to be seen from everywhere; ``height`` is in metres."""
+    return prisms([np.add(position, 0.02 * _CIRCLE[::4])], 0.0, height, style.GOAL)
+
+
 def _corners(obstacle: Shape, lens: Lens) -> int:
     """Return how many corners make a cylinder look round at its size in the picture."""
     distance = max(math.dist(lens.eye[:2], obstacle.position), lens.eye[2])
     return 2 * corners_for(obstacle.extent() * lens.pixels_per_radian() / distance)
 
 
-def _prisms(outlines: Iterable[Floats], bottom: float, top: float, colour: style.Colour) -> Mesh:
+def prisms(outlines: Iterable[Floats], bottom: float, top: float, colour: style.Colour) -> Mesh:
     """Return upright prisms over anticlockwise convex outlines as one mesh with flat faces."""
     vertices, normals, triangles = [], [], []
     base = 0

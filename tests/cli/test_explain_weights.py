@@ -15,7 +15,7 @@ from fuzzyq_bullet.figures import curves, rule_weights
 from fuzzyq_bullet.fuzzy import paper_controller
 from fuzzyq_bullet.learning import load_policy
 from fuzzyq_bullet.learning.checkpoint import ROW
-from fuzzyq_bullet.planning.fuzzy_q_lambda import RULE_NAMES, firing, weighed, weights_of
+from fuzzyq_bullet.planning.fuzzy_q_lambda import firing, rule_names, weighed, weights_of
 from fuzzyq_bullet.planning.policies import shipped
 
 if TYPE_CHECKING:
@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 
 def test_the_weights_of_every_rule_are_told_alone_or_with_what_is_sensed(inside: Call) -> None:
     weights = weights_of(load_policy(shipped("fuzzy-q-lambda")))
+    names = rule_names(paper_controller().base)
     alone = json.loads(inside("explain", "--policy", "shipped", "--json").stdout)
     assert alone["weights"] == [
         {"rule": rule, "step": step, "turn": turn}
-        for rule, (step, turn) in zip(RULE_NAMES, weights.tolist(), strict=True)
+        for rule, (step, turn) in zip(names, weights.tolist(), strict=True)
     ]
     assert "weights_in_force" not in alone
     sensed = json.loads(inside("explain", 2, -1, "--policy", "shipped", "--json").stdout)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import csv
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fuzzyq_bullet import Trajectory, load_scenario, run, with_options
+from fuzzyq_bullet import Trajectory, UserError, load_scenario, run, with_options
 from fuzzyq_bullet.trajectory import DECISIONS, TICKS
 from tests.helpers.commands import Call
 
@@ -45,11 +46,37 @@ def test_without_out_the_tables_lie_beside_the_record(record: Path, inside: Call
     assert record.with_name("sparse-ticks.csv").exists()
 
 
+def test_both_forms_at_once(record: Path, inside: Call, tmp_path: Path) -> None:
+    done = inside("export", record, "--csv", "--mcap", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    names = [Path(line).name for line in done.stdout.splitlines()]
+    assert names == ["sparse-ticks.csv", "sparse-decisions.csv", "sparse.mcap"]
+    assert sorted(names) == sorted(path.name for path in tmp_path.iterdir())
+    assert (tmp_path / "sparse.mcap").read_bytes().startswith(b"\x89MCAP0\r\n")
+    assert inside("export", record, "--mcap", "--out", tmp_path / "alone").returncode == 0
+    assert [path.name for path in (tmp_path / "alone").iterdir()] == ["sparse.mcap"]
+
+
+def test_without_the_extra_one_line_says_what_to_install(
+    record: Path, inside: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in [name for name in sys.modules if name.startswith("fuzzyq_bullet.export.")]:
+        monkeypatch.delitem(sys.modules, name)
+    for name in ("foxglove", "foxglove.messages", "foxglove.channels", "foxglove.mcap"):
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(UserError) as error:
+        inside("export", record, "--mcap", "--csv", "--out", tmp_path)
+    assert error.value.problems == (
+        "--mcap: foxglove-sdk is not installed: pip install 'fuzzyq_bullet[mcap]'",
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_mistake_is_one_line(record: Path, fuzzyq: Call, tmp_path: Path) -> None:
     done = fuzzyq("export", record)
     assert (done.returncode, done.stderr) == (
         2,
-        "error: nothing to export: --csv says in which form\n",
+        "error: nothing to export: --csv or --mcap says in which form\n",
     )
     mine = tmp_path / "sparse-ticks.csv"
     mine.write_text("my own")

@@ -10,9 +10,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fuzzyq_bullet.fuzzy import FuzzyController, RuleTable, paper_controller
-from fuzzyq_bullet.fuzzy.paper import DIFFERENCE, DISTANCE, RULES, STEP, TURN
+from fuzzyq_bullet.fuzzy import FuzzyController, Method, RuleTable, paper_controller
+from fuzzyq_bullet.fuzzy.memberships import Gaussian
+from fuzzyq_bullet.fuzzy.sets import FuzzySet, Variable
 from fuzzyq_bullet.studies.speed.inference import FuzzyliteTwin
+
+RULES = {table: paper_controller(table).base for table in ("corrected", "printed")}
+DISTANCE, DIFFERENCE = RULES["corrected"].row, RULES["corrected"].column
+TURN, STEP = RULES["corrected"].outputs
+
+
+def width(one: FuzzySet) -> float:
+    assert isinstance(one.function, Gaussian)
+    return one.function.width
+
 
 distances = st.floats(0.0, 5.0)
 differences = st.floats(-5.0, 5.0)
@@ -35,16 +46,18 @@ def test_table_2_and_3_name_what_the_paper_names() -> None:
 
 
 @pytest.mark.parametrize("variable", [TURN, STEP], ids=lambda variable: variable.name)
-def test_the_completion_of_table_3_crosses_at_one_half_and_is_symmetric(variable) -> None:  # type: ignore[no-untyped-def]
+def test_the_completion_of_table_3_crosses_at_one_half_and_is_symmetric(
+    variable: Variable,
+) -> None:
     for left, right in zip(variable.sets, variable.sets[1:], strict=False):
-        crossing = left.center + (right.center - left.center) * left.width / (
-            left.width + right.width
+        crossing = left.center + (right.center - left.center) * width(left) / (
+            width(left) + width(right)
         )
         # The table gives three decimals of the widths: 0.5 to about two.
-        assert left.membership(crossing) == pytest.approx(0.5, abs=0.01)
+        assert left.function.degree(crossing) == pytest.approx(0.5, abs=0.01)
     middle = sum(variable.domain)
     for one, mirror in zip(variable.sets, reversed(variable.sets), strict=True):
-        assert one.width == mirror.width
+        assert width(one) == width(mirror)
         assert one.center == pytest.approx(middle - mirror.center)
 
 
@@ -183,10 +196,10 @@ def test_left_and_right_are_alike_once_pb_mirrors_nb(
     distance: float, difference: float, samples: int
 ) -> None:
     nb, *others, pb = DIFFERENCE.sets
-    mirrored = dataclasses.replace(pb, width=nb.width, center=-nb.center)
+    mirrored = dataclasses.replace(pb, function=Gaussian(-nb.center, width(nb)))
     column = dataclasses.replace(DIFFERENCE, sets=(nb, *others, mirrored))
     controller = FuzzyController(
-        dataclasses.replace(RULES["corrected"], column=column), samples=samples
+        dataclasses.replace(RULES["corrected"], column=column), Method(samples=samples)
     )
     there, back = (controller.infer(distance, sign * difference) for sign in (1, -1))
     assert there.turn == pytest.approx(-back.turn, abs=ROUNDING)

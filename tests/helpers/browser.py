@@ -13,7 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+_NAMES = ("chromium", "chromium-browser", "google-chrome")
+CHROMIUM = next(filter(None, map(shutil.which, _NAMES)), None)
 
 PATIENCE = 40.0
 """Longest silence of a browser (s)."""
@@ -75,6 +76,32 @@ class Browser:
         )
         assert "exceptionDetails" not in told, told
         return told["result"].get("value")
+
+    def press(self, key: str, *, shift: bool = False) -> None:
+        """Press a key and let it go: a character, or a name such as ``ArrowLeft``."""
+        given: dict[str, Any] = {"key": key, "modifiers": 8 if shift else 0}
+        text = {"text": key} if len(key) == 1 else {}
+        self("Input.dispatchKeyEvent", type="keyDown", **given, **text)
+        self("Input.dispatchKeyEvent", type="keyUp", **given)
+
+    def drag(self, *points: tuple[float, float]) -> None:
+        """Press the mouse at the first point (CSS pixels), move it along, let go at the last."""
+        held = {"button": "left", "clickCount": 1}
+        first, *further = points
+        for kind, (x, y), buttons in (
+            ("mouseMoved", first, 0),
+            ("mousePressed", first, 1),
+            *(("mouseMoved", point, 1) for point in further),
+            ("mouseReleased", points[-1], 0),
+        ):
+            self("Input.dispatchMouseEvent", type=kind, x=x, y=y, buttons=buttons, **held)
+
+    def touch(self, *points: tuple[float, float]) -> None:
+        """Touch the first point (CSS pixels), move along the others, let go."""
+        kinds = ["touchStart", *["touchMove"] * (len(points) - 1)]
+        for kind, (x, y) in zip(kinds, points, strict=True):
+            self("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y}])
+        self("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
     def picture(self, *, whole: bool = False) -> bytes:
         """A PNG of what is to be seen; or of the whole page."""

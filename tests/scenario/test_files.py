@@ -152,14 +152,14 @@ def test_yaml_1_2_numbers_are_numbers_and_yaml_1_1_oddities_are_text():
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        ("", "x.yaml:1: the file is empty; a scenario needs name, start and goal"),
-        ("# a comment\n", "x.yaml:1: the file is empty; a scenario needs name, start and goal"),
+        ("", "x.yaml:1: the file is empty"),
+        ("# a comment\n", "x.yaml:1: the file is empty"),
         ("---\n", "x.yaml:2: expected a mapping with the keys name, start and goal, got nothing"),
         ("\n- 1\n- 2\n",
          "x.yaml:2: expected a mapping with the keys name, start and goal, got [1, 2]"),
         ("hello", "x.yaml:1: expected a mapping with the keys name, start and goal, got 'hello'"),
         (GOOD + "name: again\n", "x.yaml:4: the key 'name' is given twice, first on line 1"),
-        (GOOD + "---\n" + GOOD, "x.yaml:4: a second document begins; one scenario per file"),
+        (GOOD + "---\n" + GOOD, "x.yaml:4: a second document begins; one in a file"),
         (GOOD + "5: a\n", "x.yaml:4: a key must be text, got 5; put it in quotes"),
         (GOOD + "null: a\n", "x.yaml:4: a key must be text, got null; put it in quotes"),
         (GOOD + "[a]: b\n", "x.yaml:4: a key must be text, got a list or mapping"),

@@ -26,11 +26,11 @@ from fuzzyq_bullet.planning import (
 from fuzzyq_bullet.planning.fuzzy_q_lambda import (
     CHOICE_NAMES,
     CHOICES,
-    RULE_NAMES,
     STEPS,
     TURNS,
-    TWINS,
     firing,
+    rule_names,
+    twins_of,
     weighed,
     weights_of,
 )
@@ -44,6 +44,8 @@ if TYPE_CHECKING:
 
 
 PAPER = paper_controller()
+RULE_NAMES = rule_names(PAPER.base)
+TWINS = twins_of(PAPER.base)
 
 
 def thinking(*best: int) -> Policy:
@@ -191,7 +193,7 @@ def earned(problem: RuleWeightsProblem, choice: int) -> tuple[list[float], int]:
 @pytest.mark.slow
 def test_what_an_episode_earns_is_its_delay() -> None:
     tasks = Tasks(drive="wheels", scenario=load_scenario("u-shape"))
-    problem = RuleWeightsProblem(tasks, discount=1.0)
+    problem = RuleWeightsProblem(tasks, settings=FuzzyQLambdaSettings(), discount=1.0)
     rewards, steps = earned(problem, 4)
     assert problem.outcome == "goal"
     scenario = tasks.scenario_of(1)
@@ -211,7 +213,9 @@ def test_discounted_the_way_that_is_left_counts_by_what_it_is_worth_later() -> N
     tasks, discount = Tasks(drive="wheels", scenario=load_scenario("open-field")), 0.9
     sums = []
     for choice in (1, 4):
-        rewards, steps = earned(RuleWeightsProblem(tasks, discount=discount), choice)
+        rewards, steps = earned(
+            RuleWeightsProblem(tasks, settings=FuzzyQLambdaSettings(), discount=discount), choice
+        )
         spent = -0.3 * sum(discount**k for k in range(steps))
         sums.append(sum(discount**k * reward for k, reward in enumerate(rewards)) - spent)
     scenario = tasks.scenario_of(1)

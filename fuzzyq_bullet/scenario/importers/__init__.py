@@ -14,10 +14,11 @@ from typing import TypeAlias
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.problems import key_path
 from fuzzyq_bullet.scenario.checks import check
 from fuzzyq_bullet.scenario.files import load_scenario
 from fuzzyq_bullet.scenario.models import Scenario
-from fuzzyq_bullet.scenario.problems import key_path, problems_of
+from fuzzyq_bullet.scenario.problems import problems_of
 from fuzzyq_bullet.wording import error_in_words, not_one_of
 
 Importer: TypeAlias = Callable[[Path], Scenario]

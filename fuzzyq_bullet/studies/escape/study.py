@@ -15,7 +15,14 @@ from fuzzyq_bullet.scenario import Drive, Limits
 from fuzzyq_bullet.studies.episodes import Environment, Job
 from fuzzyq_bullet.studies.escape.comparison import BESIDE, compare, shown_comparison
 from fuzzyq_bullet.studies.escape.table import TRAPS, shown_table, table_of
-from fuzzyq_bullet.studies.options import counts_of, drives_of, planner_of
+from fuzzyq_bullet.studies.options import (
+    RULES_HELP,
+    counts_of,
+    drives_of,
+    planner_of,
+    rules_told,
+    with_rules,
+)
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, PlannerDescription, Seed
 from fuzzyq_bullet.studies.registry import register_study
 from fuzzyq_bullet.studies.study import (
@@ -114,13 +121,14 @@ class Escape(Study):
     drive: str = Field("both", description="wheels (physics), kinematic, or both.")
     planner: str = Field("improved-fuzzy", description="Planner to ask.")
     weights: str | None = Field(None, description="Its weights ω1,ω2; 1,1 where it takes any.")
+    rules: str | None = Field(None, description=RULES_HELP)
     beside: bool = Field(
         False, description="Run it without parts of it, and what knows the truth, as well."
     )
 
     def planner_set(self) -> dict[str, PlannerSettings]:
         """Return the one that is asked, and its variants."""
-        settings = planner_of(self.planner, self.weights)
+        settings = with_rules(planner_of(self.planner, self.weights), self.rules)
         return {self.planner: settings, **(variants_of(settings) if self.beside else {})}
 
     def plan(self) -> EscapePlan:
@@ -158,6 +166,7 @@ class Escape(Study):
             drive=plan.drives[0] if len(plan.drives) == 1 else "both",
             planner=plan.planner["name"],
             weights=None if not weights else ",".join(f"{one:g}" for one in weights),
+            rules=rules_told(plan.planner),
             seed=plan.seed,
             beside=bool(plan.beside),
         )

@@ -15,7 +15,7 @@ from pydantic import Field, ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, hash_of
-from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
+from fuzzyq_bullet.planning.fuzzy_q_lambda import policy_spec
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, PlannerSettings
 from fuzzyq_bullet.scenario import Drive, Limits
@@ -173,7 +173,7 @@ class Learning(Study):
             settings = FuzzyQLambdaSettings(policy=path)
         except ValidationError as error:
             raise UserError(f"--policy: {error.errors(include_url=False)[0]['msg']}") from error
-        return settings, policy_of(settings, POLICY_SPEC)
+        return settings, policy_of(settings, policy_spec(settings))
 
     @classmethod
     def recalled(cls, plans: Mapping[str, Any]) -> Learning | None:

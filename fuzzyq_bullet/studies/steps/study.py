@@ -14,8 +14,7 @@ from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import ImprovedFuzzySettings, PlannerSettings
-from fuzzyq_bullet.planning.fuzzy_q_lambda import POLICY_SPEC
-from fuzzyq_bullet.planning.policies import policy_of
+from fuzzyq_bullet.planning.fuzzy_q_lambda import rule_policy
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
 from fuzzyq_bullet.studies.options import (
     GUARDED,
@@ -106,7 +105,7 @@ class Steps(Study):
         notes: tuple[str, ...] = ()
         if self.pair is None:
             # On environments of the training, never on those of the table.
-            learned = policy_of(FuzzyQLambdaSettings(), POLICY_SPEC)
+            learned = rule_policy(FuzzyQLambdaSettings())
             tried = yield search(self.name, drive, learned.seed, self.grid, PAIRS)
             best = best_of(tried.rows, PAIRS).best
             notes = (f"best pair on the training's environments: {words_of(best)}",)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -14,10 +14,12 @@ from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.options import (
     GUARDED,
     PAPER,
+    RULES_HELP,
     counts_of,
     described,
     one_drive_of,
     planners_of,
+    rules_told,
 )
 from fuzzyq_bullet.studies.plan import FieldsPlan, limits_with
 from fuzzyq_bullet.studies.registry import register_study
@@ -82,9 +84,19 @@ class Success(Study):
         "kinematic", description="wheels (physics), or kinematic (the paper's point robot)."
     )
 
+    rules: str | None = Field(None, description=RULES_HELP)
+
     def planner_set(self) -> Mapping[str, PlannerSettings]:
         """Return those that are compared."""
-        return planners_of(self.planners)
+        return planners_of(self.planners, self.rules)
+
+    @classmethod
+    def recalled(cls, plans: Mapping[str, Any]) -> Study | None:
+        """Return the study whose plan this is."""
+        study = super().recalled(plans)
+        told = (rules_told(one) for one in plans[cls.name].planners.values())
+        rules = next((one for one in told if one is not None), None)
+        return None if study is None else study.model_copy(update={"rules": rules})
 
     def plan(self) -> FieldsPlan:
         """Return what is run."""

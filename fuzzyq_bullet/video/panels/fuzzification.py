@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image, ImageDraw
 
-from fuzzyq_bullet.fuzzy.paper import NEAR_WORDS, RULES, SIDE_WORDS
+from fuzzyq_bullet.planning.controllers import controller_shown
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import aim_name, is_clear
 from fuzzyq_bullet.video.panels.base import Canvas
@@ -16,7 +16,6 @@ from fuzzyq_bullet.video.style import FUZZIFICATION
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.fuzzy.rules import RuleBase
     from fuzzyq_bullet.fuzzy.sets import Variable
     from fuzzyq_bullet.trajectory import Trajectory
     from fuzzyq_bullet.video.footprints import Floats
@@ -34,17 +33,14 @@ class Sets:
 
     Args:
         variable: Whose sets.
-        words: What each set is called in plain words.
         top: Upper edge in the card (pixels).
         mirrored: Whether greater values are drawn further left: where Df is greater, more room is
             on the left.
     """
 
-    def __init__(
-        self, variable: Variable, words: tuple[str, ...], top: int, *, mirrored: bool
-    ) -> None:
+    def __init__(self, variable: Variable, top: int, *, mirrored: bool) -> None:
         self._variable = variable
-        self._words = words
+        self._words = [one.meaning for one in variable.sets]
         self._box = (_LEFT, top + 22, _LEFT + _WIDTH, top + 22 + _PLOT_HEIGHT)
         self._top = top
         self._mirrored = mirrored
@@ -126,11 +122,18 @@ class Sets:
         return image
 
     def _write_labels(self, image: Image.Image, levels: list[int], strongest: int) -> None:
-        for number, one in enumerate(self._variable.sets):
+        """Write the labels below their sets; where they would overlap, the strongest wins."""
+        taken: list[tuple[float, float]] = []
+        numbers = sorted(range(len(levels)), key=lambda number: number != strongest)
+        for number in numbers:
+            one = self._variable.sets[number]
             x, _ = self._at(one.center, 0.0)
             bold = number == strongest
             half = style.text_width(one.label, 15, bold) / 2
             x = min(max(x, self._box[0] + half), self._box[2] - half)
+            if any(x - half < right and left < x + half for left, right in taken):
+                continue
+            taken.append((x - half - 2, x + half + 2))
             colour = style.mixed(style.FAINT, style.TEXT, levels[number] / _LEVELS)
             y = self._box[3] - self._top + 16
             paint.write(image, (x, y), one.label, colour, 15, bold=bold, align="m")
@@ -142,9 +145,10 @@ class Fuzzification:
     def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
         self._canvas = canvas
         self._trajectory, self._decisions = trajectory, trajectory.decisions
-        base = rule_base(trajectory)
-        self._near = Sets(base.row, NEAR_WORDS, 28, mirrored=False)
-        self._side = Sets(base.column, SIDE_WORDS, 120, mirrored=True)
+        base = controller_shown(trajectory.scenario.planner).base
+        self._near = Sets(base.row, 28, mirrored=False)
+        self._side = Sets(base.column, 120, mirrored=True)
+        self._blank = np.full(len(base.row.sets), np.nan), np.full(len(base.column.sets), np.nan)
         self._decision: int | None = None
 
     def draw(self, moment: Moment) -> None:
@@ -153,10 +157,10 @@ class Fuzzification:
         if decision == self._decision:
             return
         self._decision = decision
-        d, blank = self._decisions, np.full(5, np.nan)
+        d = self._decisions
         if decision == NO_DECISION:
-            near = self._near.draw("to the goal:", math.nan, blank)
-            side = self._side.draw("sides:", math.nan, blank)
+            near = self._near.draw("to the goal:", math.nan, self._blank[0])
+            side = self._side.draw("sides:", math.nan, self._blank[1])
         else:
             # With a clear way to the goal the planner does not look aside: Df is simply 0.
             said = ("way is clear", "not asked") if is_clear(d, decision) else ("", "")
@@ -168,12 +172,6 @@ class Fuzzification:
         for plot, image in ((self._near, near), (self._side, side)):
             if image is not None:
                 self._canvas.paste(image, (0, plot.top))
-
-
-def rule_base(trajectory: Trajectory) -> RuleBase:
-    """Return the rules that the planner of a run asks; those of the paper if it has none."""
-    named: Any = getattr(trajectory.scenario.planner, "rules", "corrected")
-    return RULES.get(named, RULES["corrected"])
 
 
 def _drawn(box: paint.Box, points: Floats, *, fill: bool) -> Image.Image:

@@ -14,13 +14,12 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.fuzzy.paper import NEAR_WORDS
+from fuzzyq_bullet.planning.controllers import controller_shown
 from fuzzyq_bullet.planning.fuzzy_q_lambda import rule_policy, weights_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, WeightsSettings
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import is_asked
 from fuzzyq_bullet.video.panels.base import Canvas
-from fuzzyq_bullet.video.panels.fuzzification import rule_base
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
@@ -29,7 +28,10 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.video.footprints import Floats
 
 _LEFT, _TOP = 86, 48
-_CELL_WIDTH, _CELL_HEIGHT = 36, 32
+_TABLE = (180, 160)
+"""Width and height of the table: its cells are as large as their number allows."""
+_ROOMY = 22
+"""Cells smaller than this (pixels) have no arrow: only how strongly they fire is to be seen."""
 _GAP = 2
 _LEVELS = 32
 """Steps of brightness; finer ones cannot be told apart."""
@@ -49,23 +51,34 @@ class Rules:
     def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
         self._canvas, self._image = canvas, canvas.image
         self._decisions = trajectory.decisions
-        base = rule_base(trajectory)
+        base = controller_shown(trajectory.scenario.planner).base
         turn_unit = float(getattr(trajectory.scenario.planner, "turn_unit", math.radians(45.0)))
         self._rows, self._columns = len(base.row.sets), len(base.column.sets)
+        self._cell = _TABLE[0] // max(self._columns, 2), _TABLE[1] // max(self._rows, 3)
         weights = rule_weights(trajectory).reshape(self._rows, self._columns, 2)
         self._arrows = [
             [
-                _arrow(base.cells[row][column], base.outputs, weights[row, column], turn_unit)
+                _arrow(
+                    base.cells[row][column],
+                    base.outputs,
+                    weights[row, column],
+                    turn_unit,
+                    self._cell,
+                )
                 for column in range(self._columns)
             ]
             for row in range(self._rows)
         ]
-        right = _LEFT + self._columns * _CELL_WIDTH - _GAP
-        paint.write(self._image, (_LEFT, 43), "left freer", style.MUTED, 15)
-        paint.write(self._image, (right, 43), "right freer", style.MUTED, 15, align="r")
-        for row, words in enumerate(NEAR_WORDS[: self._rows]):
-            y = _TOP + row * _CELL_HEIGHT + _CELL_HEIGHT // 2 + 4
-            paint.write(self._image, (_LEFT - 8, y), words, style.MUTED, 15, align="r")
+        right = _LEFT + self._columns * self._cell[0] - _GAP
+        if self._columns > 1:
+            paint.write(self._image, (_LEFT, 43), "left freer", style.MUTED, 15)
+            paint.write(self._image, (right, 43), "right freer", style.MUTED, 15, align="r")
+        # Where rows are too low for a word each, every second or third has one.
+        every = math.ceil(16 / self._cell[1])
+        for row, one in list(enumerate(base.row.sets))[::every]:
+            y = _TOP + row * self._cell[1] + self._cell[1] // 2 + 4
+            words, size = style.fitting(one.meaning, _LEFT - 12, (15, 13))
+            paint.write(self._image, (_LEFT - 8, y), words, style.MUTED, size, align="r")
         self._shown: dict[tuple[int, int], tuple[int, bool, bool]] = {}
         self._asked: bool | None = None
         self._decision: int | None = None
@@ -101,17 +114,19 @@ class Rules:
     def _draw_cell(
         self, row: int, column: int, level: int, strongest: bool, asked: bool
     ) -> paint.Box:
-        x = _LEFT + (self._columns - 1 - column) * _CELL_WIDTH
-        y = _TOP + row * _CELL_HEIGHT
+        width, height = self._cell
+        x = _LEFT + (self._columns - 1 - column) * width
+        y = _TOP + row * height
         lit = level / _LEVELS
-        box = (x, y, x + _CELL_WIDTH - _GAP - 1, y + _CELL_HEIGHT - _GAP - 1)
+        box = (x, y, x + width - _GAP - 1, y + height - _GAP - 1)
         outline = style.TEXT if strongest else None
         fill = style.mixed(_UNLIT, style.HEAT if asked else _GREY, lit)
         ImageDraw.Draw(self._image).rectangle(box, fill, outline, 2)
         ink = style.PAGE if lit > 0.45 else style.mixed(style.FAINT, style.TEXT, lit)
         if not asked:
             ink = style.FAINT
-        self._image.paste(ink, (x, y), self._arrows[row][column])
+        if min(self._cell) >= _ROOMY:
+            self._image.paste(ink, (x, y), self._arrows[row][column])
         return box[0], box[1], box[2] + 1, box[3] + 1
 
 
@@ -138,15 +153,19 @@ def rule_weights(trajectory: Trajectory) -> Floats:
 
 
 def _arrow(
-    cell: tuple[str, ...], outputs: tuple[Variable, ...], weights: Floats, turn_unit: float
+    cell: tuple[str, ...],
+    outputs: tuple[Variable, ...],
+    weights: Floats,
+    turn_unit: float,
+    room: tuple[int, int],
 ) -> Image.Image:
     """Return an arrow that points where the rule turns and is as long as it steps, weighed."""
     turn_label, step_label = cell
     turn, step = outputs
-    angle = {one.label: one.center for one in turn.sets}[turn_label] * turn_unit * weights[1]
-    part = {one.label: one.center for one in step.sets}[step_label] / step.domain[1] * weights[0]
-    size = (_CELL_WIDTH - _GAP, _CELL_HEIGHT - _GAP)
-    length = 10.0 + 14.0 * min(max(part, 0.0), 1.0)
+    angle = turn.set_of(turn_label).center * turn_unit * weights[1]
+    part = step.set_of(step_label).center / step.domain[1] * weights[0]
+    size = (room[0] - _GAP, room[1] - _GAP)
+    length = (10.0 + 14.0 * min(max(part, 0.0), 1.0)) * min(size) / 30.0
     way = np.array((-math.sin(angle), -math.cos(angle)))
     aside = np.array((way[1], -way[0]))
     middle = np.array(size) / 2

@@ -140,7 +140,7 @@ class _Builder:
             elif isinstance(event, yaml.CollectionEndEvent):
                 finished = self._end()
             elif isinstance(event, yaml.DocumentStartEvent) and root is not None:
-                raise self._error(line, "a second document begins; one scenario per file")
+                raise self._error(line, "a second document begins; one in a file")
             else:
                 continue
             if finished is None:
@@ -150,7 +150,7 @@ class _Builder:
             else:
                 root = finished
         if root is None:
-            raise self._error(1, "the file is empty; a scenario needs name, start and goal")
+            raise self._error(1, "the file is empty")
         return root
 
     def _scalar(self, event: Any, line: int) -> Node | None:

@@ -1,0 +1,228 @@
+"""What a record shows in space, as entities of Foxglove's scenes (extra ``mcap``).
+
+The world's frame is ``world``, the robot's ``base_link``: x forward, y left, z up (REP 103).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from foxglove.messages import (
+    Color,
+    CylinderPrimitive,
+    Duration,
+    FrameTransform,
+    FrameTransforms,
+    KeyValuePair,
+    LinePrimitive,
+    Point3,
+    Pose,
+    PosesInFrame,
+    Quaternion,
+    SceneEntity,
+    SceneEntityDeletion,
+    SceneEntityDeletionType,
+    SceneUpdate,
+    SpherePrimitive,
+    Timestamp,
+    TriangleListPrimitive,
+    Vector3,
+)
+
+from fuzzyq_bullet.physics.camera import Mesh
+from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT
+from fuzzyq_bullet.robots import RobotModel
+from fuzzyq_bullet.scenario import Scenario
+from fuzzyq_bullet.trajectory import Ticks, Trajectory
+from fuzzyq_bullet.video import meshes, style
+from fuzzyq_bullet.video.footprints import arrow
+from fuzzyq_bullet.video.timeline import sensed_at
+
+WORLD, ROBOT = "world", "base_link"
+SIDES = ("left", "middle", "right")
+
+_LINE_WIDTH = 0.03
+_MARK = 0.16
+_FAINT = 0.25
+"""Opacity of the ground that the robot would cover along a detection line."""
+
+
+def stamp(time: int) -> Timestamp:
+    """Return a time (ns) as Foxglove has it."""
+    return Timestamp(time // 10**9, time % 10**9)
+
+
+def world_entities(scenario: Scenario) -> SceneUpdate:
+    """Return all that stands still: each obstacle, the walls, the goal."""
+    walls = meshes.walls_of(scenario, meshes.EVERYWHERE)
+    entities = [_entity("goal", solids=[meshes.goal_disc(scenario)])]
+    if walls:
+        wall = meshes.prisms(walls, 0.0, WALL_HEIGHT, style.WALL)
+        entities.append(_entity("walls", solids=[wall]))
+    for index, obstacle in enumerate(scenario.obstacles):
+        solid = meshes.prisms([obstacle.outline()], 0.0, OBSTACLE_HEIGHT, style.OBSTACLE)
+        about = obstacle.model_dump(mode="json", exclude={"motion"})
+        entities.append(_entity(f"obstacles[{index}]", solids=[solid], about=about))
+    return SceneUpdate(entities=entities)
+
+
+def robot_entities(model: RobotModel) -> SceneUpdate:
+    """Return the robot in its own frame, with an arrow that shows which way it faces."""
+    height = 2.0 * (model.height - model.sensor_height)
+    body = CylinderPrimitive(
+        pose=_pose(0.0, 0.0, model.sensor_height),
+        size=Vector3(x=2 * model.radius, y=2 * model.radius, z=height),
+        bottom_scale=1.0,
+        top_scale=1.0,
+        color=_colour(style.ROBOT),
+    )
+    nose = meshes.prisms(
+        [arrow((0.0, 0.0), 0.0, 1.2 * model.radius)], model.height, model.height + 0.005, style.CARD
+    )
+    entity = SceneEntity(
+        frame_id=ROBOT,
+        id="robot",
+        frame_locked=True,
+        lifetime=Duration(0),
+        timestamp=stamp(0),
+        cylinders=[body],
+        triangles=[_triangles(nose)],
+    )
+    return SceneUpdate(entities=[entity])
+
+
+def path_poses(ticks: Ticks) -> PosesInFrame:
+    """Return the whole path."""
+    pairs = zip(ticks.position.tolist(), ticks.heading.tolist(), strict=True)
+    poses = [_pose(x, y, 0.0, heading) for (x, y), heading in pairs]
+    return PosesInFrame(timestamp=stamp(0), frame_id=WORLD, poses=poses)
+
+
+def robot_frame(time: int, position: tuple[float, float], heading: float) -> FrameTransforms:
+    """Return where the robot's frame is at a time (ns): its position (m) and heading (rad)."""
+    transform = FrameTransform(
+        timestamp=stamp(time),
+        parent_frame_id=WORLD,
+        child_frame_id=ROBOT,
+        translation=Vector3(x=position[0], y=position[1], z=0.0),
+        rotation=_turned(heading),
+    )
+    return FrameTransforms(transforms=[transform])
+
+
+def detection_lines(trajectory: Trajectory, index: int, time: int) -> SceneUpdate:
+    """Return the detection lines of a decision in place of those before; none if it has none.
+
+    Args:
+        trajectory: The record.
+        index: Which decision.
+        time: When it was taken (ns).
+    """
+    sensed = sensed_at(trajectory, index)
+    height = trajectory.scenario.robot.spec.sensor_height
+    entities = []
+    if sensed is not None:
+        for side, colour, line, corridor in zip(
+            SIDES, style.LINES, sensed.lines, sensed.corridors, strict=False
+        ):
+            (x, y), (heading, length) = sensed.origin, line
+            reach = sensed.radius + length
+            tip = (x + reach * math.cos(heading), y + reach * math.sin(heading))
+            stroke = LinePrimitive(
+                pose=_pose(0.0, 0.0, 0.0),
+                thickness=_LINE_WIDTH,
+                points=[Point3(x=one[0], y=one[1], z=height) for one in ((x, y), tip)],
+                color=_colour(colour),
+            )
+            cover = TriangleListPrimitive(
+                pose=_pose(0.0, 0.0, 0.0),
+                points=[Point3(x=one, y=other, z=0.01) for one, other in corridor.tolist()],
+                color=_colour(colour, _FAINT),
+                indices=[k for last in range(2, len(corridor)) for k in (0, last - 1, last)],
+            )
+            entities.append(_entity(side, time, lines=[stroke], triangles=[cover]))
+    return _instead(entities, time)
+
+
+def aim_marks(trajectory: Trajectory, index: int, time: int) -> SceneUpdate:
+    """Return what a decision aims at, and its temporary goal, in place of those before.
+
+    Args:
+        trajectory: The record.
+        index: Which decision.
+        time: When it was taken (ns).
+    """
+    sensed = sensed_at(trajectory, index)
+    marks = (
+        ()
+        if sensed is None
+        else (
+            ("aim", style.AIM, sensed.aim),
+            ("temporary goal", style.TARGET, sensed.target),
+        )
+    )
+    entities = [
+        _entity(
+            name,
+            time,
+            spheres=[
+                SpherePrimitive(
+                    pose=_pose(*point, _MARK / 2),
+                    size=Vector3(x=_MARK, y=_MARK, z=_MARK),
+                    color=_colour(colour),
+                )
+            ],
+        )
+        for name, colour, point in marks
+        if point is not None
+    ]
+    return _instead(entities, time)
+
+
+def _instead(entities: list[SceneEntity], time: int) -> SceneUpdate:
+    """Return entities that take the place of all that the topic has shown so far."""
+    everything = SceneEntityDeletion(timestamp=stamp(time), type=SceneEntityDeletionType.All)
+    return SceneUpdate(deletions=[everything], entities=entities)
+
+
+def _entity(
+    name: str,
+    time: int = 0,
+    *,
+    solids: Iterable[Mesh] = (),
+    about: Mapping[str, Any] | None = None,
+    **primitives: Any,
+) -> SceneEntity:
+    """Return something in the world that stays until it is deleted."""
+    return SceneEntity(
+        timestamp=stamp(time),
+        frame_id=WORLD,
+        id=name,
+        lifetime=Duration(0),
+        metadata=[KeyValuePair(key=key, value=str(value)) for key, value in (about or {}).items()],
+        **{"triangles": [_triangles(solid) for solid in solids], **primitives},
+    )
+
+
+def _triangles(mesh: Mesh) -> TriangleListPrimitive:
+    return TriangleListPrimitive(
+        pose=_pose(0.0, 0.0, 0.0),
+        points=[Point3(x=x, y=y, z=z) for x, y, z in mesh.vertices.tolist()],
+        color=_colour(mesh.colour),
+        indices=mesh.triangles.ravel().tolist(),
+    )
+
+
+def _colour(colour: style.Colour, opacity: float = 1.0) -> Color:
+    red, green, blue = (part / 255 for part in colour)
+    return Color(r=red, g=green, b=blue, a=opacity)
+
+
+def _pose(x: float, y: float, z: float, heading: float = 0.0) -> Pose:
+    return Pose(position=Vector3(x=x, y=y, z=z), orientation=_turned(heading))
+
+
+def _turned(heading: float) -> Quaternion:
+    return Quaternion(x=0.0, y=0.0, z=math.sin(heading / 2), w=math.cos(heading / 2))

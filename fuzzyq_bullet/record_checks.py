@@ -1,0 +1,49 @@
+"""What every reader of a record relies on, beyond the shapes of its arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzyq_bullet.columns import FAR
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.scenario.models import Scenario
+    from fuzzyq_bullet.trajectory import Collision
+
+LONGEST = 7200.0
+"""Longest run that is read (s): twice the greatest limit of a scenario."""
+
+
+def check_order(time: NDArray[np.float64], tick: NDArray[np.int64]) -> None:
+    """Check that ticks and decisions follow each other.
+
+    Args:
+        time: Times of the ticks (s), shape (T,).
+        tick: Index of the tick of each decision, shape (D,).
+
+    Raises:
+        ValueError: If a run cannot have left these numbers.
+    """
+    if not (np.diff(time) > 0).all():
+        raise ValueError("ticks.time does not increase")
+    if time[-1] - time[0] > LONGEST:
+        raise ValueError(f"ticks.time spans more than {LONGEST:g} s")
+    last = time.size - 1
+    if tick.min() < 0 or tick.max() > last or (np.diff(tick) < 0).any():
+        raise ValueError(f"decisions.tick does not run upwards within 0 to {last}")
+
+
+def check_collision(collision: Collision, scenario: Scenario) -> None:
+    """Check what every reader of a collision relies on.
+
+    Raises:
+        ValueError: If a run cannot have left these numbers.
+    """
+    numbers = (collision.time, *collision.point, collision.normal_force)
+    if not all(abs(number) < FAR for number in numbers):
+        raise ValueError("collision holds a number that is not finite, or is absurd")
+    if not -1 <= collision.obstacle < len(scenario.obstacles):
+        raise ValueError(f"collision.obstacle: there is no obstacle {collision.obstacle}")
