@@ -3,5 +3,17 @@
 from fuzzyq_bullet.video.panels import Canvas, Panel, register_panel
 from fuzzyq_bullet.video.record import VideoInfo, frame, record
 from fuzzyq_bullet.video.timeline import Moment
+from fuzzyq_bullet.video.views import Stage, View, register_view
 
-__all__ = ["Canvas", "Moment", "Panel", "VideoInfo", "frame", "record", "register_panel"]
+__all__ = [
+    "Canvas",
+    "Moment",
+    "Panel",
+    "Stage",
+    "VideoInfo",
+    "View",
+    "frame",
+    "record",
+    "register_panel",
+    "register_view",
+]
