@@ -24,6 +24,8 @@ CLOSING = 1.0
 FORMATS = ("mp4", "gif")
 EXPLAIN = "explain"
 """The usual view."""
+VIEWS = (EXPLAIN, "scene", "follow", "map")
+"""Those of the package, which races have too."""
 _ROUNDING = 1e-9
 _SIZE = re.compile(r"(\d{1,6})x(\d{1,6})")
 
@@ -66,7 +68,10 @@ class Filming:
             check_time(self.end)
         except ValueError as error:
             raise UserError(f"{name}: {error}") from error
-        check_part(self.start, self.end)
+        if self.end is not None and self.end <= (self.start or 0.0):
+            raise UserError(
+                f"end: must be later than start ({self.start or 0:g} s); got {self.end:g}"
+            )
 
     def times(self, start: float, end: float, fps: int) -> Iterator[float]:
         """Yield the time of each frame (s) of a run; infinity for those that show how it ended.
@@ -87,10 +92,17 @@ class Filming:
         _, running, closing = self._frames(start, end, fps)
         return running + closing
 
+    def check_begins(self, end: float) -> None:
+        """Check that it begins before a run ends (s).
+
+        Raises:
+            UserError: If it does not.
+        """
+        if self.start is not None and self.start > end:
+            raise UserError(f"start: {self.start:g} s is after the end of the run, {end:.2f} s")
+
     def _frames(self, start: float, end: float, fps: int) -> tuple[float, int, int]:
         first = start if self.start is None else self.start
-        if first > end:
-            raise UserError(f"start: {first:g} s is after the end of the run, {end:.2f} s")
         if self.end is not None and self.end <= end:
             return first, max(round((self.end - first) * fps / self.speed), 1), 0
         running = math.floor((end - first) * fps / self.speed + _ROUNDING) + 1
@@ -163,17 +175,3 @@ def check_time(time: float | None) -> None:
     """
     if time is not None and not (math.isfinite(time) and time >= 0.0):
         raise ValueError(f"must be a number of seconds from 0 on; got {time:g}")
-
-
-def check_part(
-    start: float | None, end: float | None, names: tuple[str, str] = ("start", "end")
-) -> None:
-    """Check that a part of a run ends after it begins.
-
-    Raises:
-        UserError: If it does not.
-    """
-    if end is not None and end <= (start or 0.0):
-        raise UserError(
-            f"{names[1]}: must be later than {names[0]} ({start or 0:g} s); got {end:g}"
-        )

@@ -13,6 +13,7 @@ from fuzzyq_bullet.cli import (
     check,
     explain,
     export,
+    race,
     report,
     run,
     scenarios,
@@ -40,6 +41,7 @@ def _add(name: str, command: Callable[..., None], **settings: Any) -> None:
 
 _add("run", run.run)
 _add("replay", run.replay)
+_add("race", race.race)
 _add("export", export.export)
 _add("check", check.check)
 _add("import", scenarios.import_map)

@@ -1,12 +1,14 @@
 """A record in, an explaining video out: scene, map, and the reason for every turn."""
 
+from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.panels import Canvas, Panel, register_panel
-from fuzzyq_bullet.video.record import VideoInfo, frame, record
+from fuzzyq_bullet.video.record import VideoInfo, frame, record, write_still
 from fuzzyq_bullet.video.timeline import Moment
 from fuzzyq_bullet.video.views import Stage, View, register_view
 
 __all__ = [
     "Canvas",
+    "DirtyRegion",
     "Moment",
     "Panel",
     "Stage",
@@ -16,4 +18,5 @@ __all__ = [
     "record",
     "register_panel",
     "register_view",
+    "write_still",
 ]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from PIL import Image
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.filming import VIEWS
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.cameras import FollowCamera
 from fuzzyq_bullet.video.captions import SHORT_OUTCOMES, Story, planner_name
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
     from fuzzyq_bullet.trajectory import Trajectory
 
-VIEWS = ("explain", "scene", "follow", "map")
-"""What a race can show: scenes, map and reasons; or only the scenes, or only the map."""
 _TITLE = 34
 """Height of the line above a scene (points)."""
 _ROW = 52

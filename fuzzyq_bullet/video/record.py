@@ -89,6 +89,8 @@ def record(
     rate = fps or (FPS if ending == ".mp4" else ANIMATION_FPS)
     if ending != ".mp4" and rate > MOST_ANIMATION_FPS:
         raise UserError(f"{path}: an animated picture has at most {MOST_ANIMATION_FPS} fps")
+    runs = [trajectory] if isinstance(trajectory, Trajectory) else trajectory
+    film.check_begins(max((float(run.ticks.time[-1]) for run in runs), default=math.inf))
     half = small or (ending != ".mp4" and size is None)
     told = progress or (lambda done, total: None)
     with (
@@ -151,6 +153,25 @@ def frame(
         for region in compositor.at(time):
             image.paste(region.image, (region.x, region.y))
     return np.array(image)
+
+
+def write_still(
+    trajectory: Trajectory | Sequence[Trajectory],
+    path: Path,
+    time: float,
+    *,
+    size: tuple[int, int] | None = None,
+    view: str = EXPLAIN,
+    names: Sequence[str] | None = None,
+) -> None:
+    """Write the frame at a time (s) as a picture (PNG); see ``frame``.
+
+    Raises:
+        UserError: If it cannot be made, or written.
+    """
+    picture = Image.fromarray(frame(trajectory, time, size=size, view=view, names=names))
+    with written_beside(path) as part:
+        picture.save(part, format="PNG", optimize=True)
 
 
 def moments(timeline: Timeline, speed: float, fps: int = FPS) -> Iterator[Moment]:
