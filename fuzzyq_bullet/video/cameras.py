@@ -14,6 +14,8 @@ from fuzzyq_bullet.video.shots import Shots
 from fuzzyq_bullet.video.viewpoint import lens_for
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fuzzyq_bullet.trajectory import Trajectory
     from fuzzyq_bullet.video.footprints import Floats
     from fuzzyq_bullet.video.timeline import Moment
@@ -49,15 +51,23 @@ class FixedCamera:
     Args:
         trajectory: The run.
         size: Width and height of the picture (pixels).
+        others: Runs of the same field that are to be seen from the same place, if all of each is
+            filmed in one shot.
     """
 
-    def __init__(self, trajectory: Trajectory, size: tuple[int, int]) -> None:
+    def __init__(
+        self, trajectory: Trajectory, size: tuple[int, int], others: Sequence[Trajectory] = ()
+    ) -> None:
         self._trajectory, self._size = trajectory, size
         self.shots = Shots(trajectory)
+        shots = [Shots(other)[0] for other in others]
+        alike = self.shots[0].whole and all(shot.whole for shot in shots)
+        self._others = [shot.points for shot in shots] if alike else []
 
     def lens(self, number: int) -> Lens:
         """Return the lens that shows all of a shot."""
-        return lens_for(self._trajectory, self.shots[number].points, self._size)
+        points = np.concatenate([self.shots[number].points, *self._others])
+        return lens_for(self._trajectory, points, self._size)
 
     def window(self, lens: Lens, moment: Moment) -> paint.Box:
         """Return all of the picture."""

@@ -12,7 +12,7 @@ from PIL import Image
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.filming import VIEWS
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.cameras import FollowCamera
+from fuzzyq_bullet.video.cameras import Camera, FixedCamera, FollowCamera
 from fuzzyq_bullet.video.captions import SHORT_OUTCOMES, Story, planner_name
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.layout import Layout, usual_size
@@ -84,7 +84,8 @@ class Race:
                     self._parts.append(_Row(one, row, layout.unit))
                 if "tile 0" in layout.cards:
                     place = layout.place(f"tile {one.number}")
-                    tile = _Tile(one, place, layout.unit, following=view == "follow")
+                    following = view == "follow"
+                    tile = _Tile(one, place, layout.unit, runs, following=following)
                     stack.callback(tile.close)
                     self._parts.append(tile)
             self._map = (
@@ -153,12 +154,22 @@ class Entrant:
 class _Tile:
     """The scene of one run below a line with its name and its clock."""
 
-    def __init__(self, entrant: Entrant, place: Rect, unit: float, *, following: bool) -> None:
+    def __init__(
+        self,
+        entrant: Entrant,
+        place: Rect,
+        unit: float,
+        runs: Sequence[Trajectory],
+        *,
+        following: bool,
+    ) -> None:
         title = round(_TITLE * unit / 2) * 2
         self._entrant, self._unit = entrant, unit
         self._place = place._replace(height=title)
         rect = Rect(place.x, place.y + title, place.width, place.height - title)
-        camera = FollowCamera(entrant.run, rect.size, 0.6 * unit) if following else None
+        camera: Camera = FixedCamera(entrant.run, rect.size, runs)
+        if following:
+            camera = FollowCamera(entrant.run, rect.size, 0.6 * unit)
         self._scene = Scene(entrant.run, rect, unit, camera=camera)
         self._sensing = Sensing(entrant.run)
         self._shown: object = None
@@ -246,7 +257,9 @@ def _write_entry(
     paint.write(image, (right, y), text, tint, middle, bold=tint != style.MUTED, align="r")
     left = 38 * unit
     room = right - style.text_width(text, middle, tint != style.MUTED) - 12 * unit - left
-    name, size = style.fitting(one.name, room, style.scaled((20, 18, 16, 14), unit), bold=True)
+    name, size = style.fitting(
+        one.name, room, style.scaled((20, 18, 16, 14, 12, 11), unit), bold=True
+    )
     paint.write(image, (left, y), name, style.TEXT, size, bold=True)
 
 
@@ -285,8 +298,8 @@ def _layout(size: tuple[int, int], count: int, view: str) -> Layout:
             top = tiles.bottom + _GAP
             aside = Rect(room.x, top, room.width, room.bottom - top)
     if view != "map":
-        stacked = view == "explain" and wide and count < 4
-        columns = 1 if stacked else (2 if count != 3 or view != "explain" else 3)
+        upright = tiles.width < tiles.height
+        columns = 2 if count == 4 else (1 if upright else count)
         cards |= _grid("tile", tiles, count, columns)
     if view in ("explain", "map"):
         rows = count * (_ROW + _GAP)
@@ -305,8 +318,8 @@ def _layout(size: tuple[int, int], count: int, view: str) -> Layout:
 def _grid(name: str, room: Rect, count: int, columns: int) -> dict[str, Rect]:
     """Return equal cards that fill a rectangle in columns."""
     lines = math.ceil(count / columns)
-    width = (room.width - (columns - 1) * _GAP) // columns
-    height = (room.height - (lines - 1) * _GAP) // lines
+    width = (room.width - (columns - 1) * _GAP) // columns // 2 * 2
+    height = (room.height - (lines - 1) * _GAP) // lines // 2 * 2
     return {
         f"{name} {number}": Rect(
             room.x + number % columns * (width + _GAP),
