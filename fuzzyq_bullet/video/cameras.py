@@ -51,22 +51,22 @@ class FixedCamera:
     Args:
         trajectory: The run.
         size: Width and height of the picture (pixels).
-        others: Runs of the same field that are to be seen from the same place, if all of each is
-            filmed in one shot.
+        together: This and other runs of the same field, which are to be seen from the same place
+            if all of each is filmed in one shot.
     """
 
     def __init__(
-        self, trajectory: Trajectory, size: tuple[int, int], others: Sequence[Trajectory] = ()
+        self, trajectory: Trajectory, size: tuple[int, int], together: Sequence[Trajectory] = ()
     ) -> None:
         self._trajectory, self._size = trajectory, size
         self.shots = Shots(trajectory)
-        shots = [Shots(other)[0] for other in others]
-        alike = self.shots[0].whole and all(shot.whole for shot in shots)
-        self._others = [shot.points for shot in shots] if alike else []
+        shots = [Shots(run)[0] for run in together]
+        alike = all(shot.whole for shot in shots)
+        self._points = np.concatenate([shot.points for shot in shots]) if shots and alike else None
 
     def lens(self, number: int) -> Lens:
         """Return the lens that shows all of a shot."""
-        points = np.concatenate([self.shots[number].points, *self._others])
+        points = self.shots[number].points if self._points is None else self._points
         return lens_for(self._trajectory, points, self._size)
 
     def window(self, lens: Lens, moment: Moment) -> paint.Box:

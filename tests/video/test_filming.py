@@ -18,7 +18,7 @@ from fuzzyq_bullet.filming import Filming, size_of
 from fuzzyq_bullet.outputs import film_name, films_of
 from fuzzyq_bullet.scenario import Cylinder
 from fuzzyq_bullet.video import Canvas, View, frame, record, register_view, style
-from fuzzyq_bullet.video.cameras import FollowCamera
+from fuzzyq_bullet.video.cameras import FixedCamera, FollowCamera
 from fuzzyq_bullet.video.compositor import Compositor
 from fuzzyq_bullet.video.layout import Layout
 from fuzzyq_bullet.video.race_map import COLOURS
@@ -197,20 +197,20 @@ def test_every_view_shows_the_robot_at_every_size(
     assert white > 12
 
 
-def test_the_camera_that_follows_keeps_the_robot_in_the_middle(run: Trajectory) -> None:
-    size = (640, 360)
+def test_the_camera_that_follows_keeps_the_robot_in_the_middle() -> None:
+    run, size = drive(scenario(0, 0), seconds=20.0), (640, 360)
     camera, timeline = FollowCamera(run, size, 0.5), Timeline(run)
     for number in range(len(camera.shots)):
         lens = camera.lens(number)
-        for time in (0.3, 1.0, 1.9):
+        for time in (0.3, 5.0, 10.0, 15.0):
             moment = timeline.at(time)
             if camera.shots.at(moment.tick) != number:
                 continue
             left, top, right, bottom = camera.window(lens, moment)
             assert (right - left, bottom - top) == size
             x, y = lens.project([(*moment.position, 0.0)])[0]
-            assert abs(x - (left + right) / 2) < 80
-            assert abs(y - (top + bottom) / 2) < 80
+            assert abs(x - (left + right) / 2) < 25
+            assert abs(y - (top + bottom) / 2) < 25
 
 
 def test_a_view_of_ones_own_is_filmed_and_its_mistakes_name_it(
@@ -292,6 +292,9 @@ def test_a_race_lasts_as_long_as_its_last_run_and_stops_each_clock_in_time(
     rows = [np.s_[21:46, 440:], np.s_[51:76, 440:]]
     assert (first[rows[0]] != last[rows[0]]).any(), "the first still drives"
     assert (first[rows[1]] == last[rows[1]]).all(), "the second is done"
+    ended = np.abs(first.astype(int) - style.HEAT).max(axis=-1) <= 12
+    assert ended[rows[1]].sum() > 20, "and it says how"
+    assert ended[rows[0]].sum() == 0
 
 
 @pytest.mark.slow
@@ -303,6 +306,13 @@ def test_a_race_has_a_scene_for_each(
 ) -> None:
     picture = frame([run] * count, 1.5, view=view, size=size).astype(int)
     assert (np.abs(picture - style.ROBOT).max(axis=-1) <= 40).sum() > 20 * count
+
+
+def test_the_scenes_of_a_race_are_seen_from_one_place(run: Trajectory) -> None:
+    runs, size = [run, numbered(run, 1.0)], (400, 200)
+    lenses = [FixedCamera(one, size, runs).lens(0) for one in runs]
+    assert lenses[0] == lenses[1]
+    assert len({FixedCamera(one, size).lens(0) for one in runs}) == 2
 
 
 def test_what_is_no_race_is_one_line(run: Trajectory, tmp_path: Path) -> None:
