@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.filming import EXPLAIN, VIEWS, Filming
 from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.scenario import Scenario, find_scenario
 from fuzzyq_bullet.trajectory import Trajectory
@@ -38,15 +39,45 @@ def run_name(given: Scenario, asked: Scenario) -> str:
     return "-".join(parts)
 
 
-def film_name(name: str, speed: float) -> str:
-    """Return ``NAME.mp4``, or ``NAME-4x.mp4``: a film at another speed replaces no other."""
-    factor = f"{speed:g}"
-    return f"{name}.mp4" if factor == "1" else f"{name}-{factor}x.mp4"
+def film_name(
+    name: str, film: Filming | None = None, form: str = "mp4", still: float | None = None
+) -> str:
+    """Return ``NAME.mp4``, or ``NAME-follow-1920x1080-4x.mp4``: no film replaces another kind.
+
+    Args:
+        name: What the run is called.
+        film: How it is filmed; what differs from the usual film becomes part of the name.
+        form: The format.
+        still: The time (s) of the one picture that is made of it, if one is.
+    """
+    film = film or Filming()
+    parts = [name]
+    if film.view != EXPLAIN:
+        parts.append(film.view)
+    if film.size is not None:
+        parts.append(f"{film.size[0]}x{film.size[1]}")
+    if film.fps is not None:
+        parts.append(f"{film.fps}fps")
+    if f"{film.speed:g}" != "1":
+        parts.append(f"{film.speed:g}x")
+    if film.start is not None or film.end is not None:
+        begin = "" if film.start is None else f"from{film.start:g}s"
+        parts.append(begin + ("" if film.end is None else f"to{film.end:g}s"))
+    if still is not None:
+        parts.append(f"at{still:g}s")
+        form = "png"
+    return f"{'-'.join(parts)}.{form}"
+
+
+_PARTS = (
+    rf"(-({'|'.join(VIEWS[1:])}))?(-\d+x\d+)?(-\d+fps)?(-[0-9.]+x)?"
+    r"(-(from[0-9.]+s)?(to[0-9.]+s)?)?(-at[0-9.]+s)?\.(mp4|gif|png)"
+)
 
 
 def films_of(folder: Path, name: str) -> list[Path]:
-    """Return the films in a folder that ``film_name`` gives this name, at whatever speed."""
-    films = re.compile(rf"{re.escape(name)}(-[0-9.]+x)?\.mp4")
+    """Return the films in a folder that ``film_name`` gives this name, however they were made."""
+    films = re.compile(re.escape(name) + _PARTS)
     try:
         return sorted(path for path in folder.iterdir() if films.fullmatch(path.name))
     except OSError:  # a folder that may be written to, and not be looked into

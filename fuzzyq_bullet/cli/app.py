@@ -14,6 +14,7 @@ from fuzzyq_bullet.cli import (
     explain,
     export,
     page,
+    race,
     report,
     run,
     scenarios,
@@ -44,6 +45,7 @@ _add("run", run.run)
 _add("replay", run.replay)
 _add("watch", watch.watch)
 _add("page", page.page)
+_add("race", race.race)
 _add("export", export.export)
 _add("check", check.check)
 _add("import", scenarios.import_map)

@@ -14,9 +14,6 @@ from rich.console import Console
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-SLOWEST, FASTEST = 0.1, 100.0
-"""Playback speeds of a video."""
-
 
 def help_of(command: Callable[..., None]) -> str:
     """Return what ``--help`` says about a command: its docstring, less what is for callers."""
@@ -49,12 +46,6 @@ def _load(names: list[str] | None) -> list[str] | None:
     return names
 
 
-def _check_speed(value: float) -> float:
-    if not SLOWEST <= value <= FASTEST:
-        raise typer.BadParameter(f"must be from {SLOWEST:g} to {FASTEST:g}, got {value:g}")
-    return value
-
-
 PluginOption: TypeAlias = Annotated[
     list[str] | None,
     typer.Option(
@@ -62,10 +53,6 @@ PluginOption: TypeAlias = Annotated[
         callback=_load,
         help="Python module or file to import first (repeatable).",
     ),
-]
-SpeedOption: TypeAlias = Annotated[
-    float,
-    typer.Option(help="Playback speed; 1 is real time.", callback=_check_speed),
 ]
 ReplaceOption: TypeAlias = Annotated[
     bool, typer.Option("--replace", help="Replace files of another run of that name.")

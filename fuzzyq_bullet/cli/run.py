@@ -9,12 +9,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fuzzyq_bullet.cli.film import (
+    FormatOption,
+    FpsOption,
+    FromOption,
+    SizeOption,
+    SpeedOption,
+    StillOption,
+    ToOption,
+    ViewOption,
+    film_request,
+)
 from fuzzyq_bullet.cli.options import (
     FOLDER,
     PlannerOption,
     PluginOption,
     ReplaceOption,
-    SpeedOption,
     progress_bar,
     say,
 )
@@ -41,19 +51,28 @@ def run(
     out: Annotated[Path, typer.Option(help="Folder to write into.", **FOLDER)] = Path("out"),
     video: Annotated[bool, typer.Option("--video/--no-video", help="Make the video.")] = True,
     speed: SpeedOption = 1.0,
+    size: SizeOption = None,
+    fps: FpsOption = None,
+    from_: FromOption = None,
+    to: ToOption = None,
+    view: ViewOption = "explain",
+    form: FormatOption = "mp4",
+    still: StillOption = None,
     replace: ReplaceOption = False,
     json: Annotated[bool, typer.Option("--json", help="Result as JSON on stdout, alone.")] = False,
 ) -> None:
     """Drive a scenario; write NAME.mp4, NAME.npz (the record) and NAME.json (the result).
 
-    What differs from the scenario's own settings becomes part of NAME: mixed-fuzzy-seed7. At a
-    speed other than 1 the video is called by that: NAME-4x.mp4. Exit code 1 when the run misses
-    what the scenario expects.
+    What differs from the scenario's own settings becomes part of NAME: mixed-fuzzy-seed7. What
+    differs from the usual video becomes part of its name: NAME-follow-1920x1080-4x.mp4. Exit code 1
+    when the run misses what the scenario expects.
     """
+    film = film_request(
+        out, form, still, speed=speed, size=size, fps=fps, start=from_, end=to, view=view
+    )
     # What takes long to load waits until the scenario is known to be right.
     from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
     from fuzzyq_bullet.outputs import (
-        film_name,
         films_of,
         plugin_inputs,
         refuse_other_run,
@@ -67,7 +86,7 @@ def run(
     task = realise(asked)
     name = run_name(given, asked)
     mp4, npz, result_file = written = writable_files(
-        out, [film_name(name, speed), f"{name}.npz", f"{name}.json"]
+        out, [film.name(name), f"{name}.npz", f"{name}.json"]
     )
     refuse_inputs(written, [*scenario_inputs(scenario, asked), *plugin_inputs(plugin or [])])
     if not video:
@@ -79,31 +98,20 @@ def run(
 
     refuse_others()
 
-    from fuzzyq_bullet import episode
     from fuzzyq_bullet.early_warnings import early_warnings
     from fuzzyq_bullet.metrics import result_of
     from fuzzyq_bullet.scenario.expectations import unmet_expectations
 
     for warning in early_warnings(scenario, asked, task):
         say(f"warning: {warning}")
-    # A planner may print; stdout is for the result.
-    with (
-        redirect_stdout(sys.stderr),
-        progress_bar("driving", task.limits.time) as (progress, bar),
-    ):
-        trajectory = episode.run(
-            task,
-            progress=lambda time, to_goal: progress.update(
-                bar, completed=time, note=f"{time:5.1f} s, {to_goal:4.1f} m to go"
-            ),
-        )
+    trajectory = driven(task)
     result = result_of(trajectory)
     refuse_others()  # again: another command may have written meanwhile
     # The record first: whatever happens to the video, it can be made again from that.
     trajectory.save(npz)
     write_text(result_file, result.model_dump_json(indent=2) + "\n")
     if video:
-        _film(trajectory, mp4, speed)
+        film.make(trajectory, mp4)
     if json:
         typer.echo(result.model_dump_json(indent=2))
     misses = unmet_expectations(task.expect, result)
@@ -127,43 +135,54 @@ def replay(
         typer.Option(help="Folder to write into; by default that of the record.", **FOLDER),
     ] = None,
     speed: SpeedOption = 1.0,
+    size: SizeOption = None,
+    fps: FpsOption = None,
+    from_: FromOption = None,
+    to: ToOption = None,
+    view: ViewOption = "explain",
+    form: FormatOption = "mp4",
+    still: StillOption = None,
     plugin: PluginOption = None,
     replace: ReplaceOption = False,
 ) -> None:
     """Make the video NAME.mp4 from a record, without running anything again.
 
-    At a speed other than 1 it is called by that: NAME-4x.mp4.
+    What differs from the usual video becomes part of its name: NAME-follow-1920x1080-4x.mp4.
 
     Raises:
         UserError: If the record cannot be read, or the video cannot be written.
     """
+    film = film_request(
+        out, form, still, speed=speed, size=size, fps=fps, start=from_, end=to, view=view
+    )
     from fuzzyq_bullet.files import refuse_inputs, writable_files
-    from fuzzyq_bullet.outputs import film_name, plugin_inputs, refuse_other_run
+    from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run
     from fuzzyq_bullet.trajectory import Trajectory
 
     record = Trajectory.load(trajectory)
     folder = out or trajectory.parent
-    (video,) = writable_files(folder, [film_name(trajectory.stem, speed)])
+    (video,) = writable_files(folder, [film.name(trajectory.stem)])
     refuse_inputs([video], [trajectory, *plugin_inputs(plugin or [])])
     if not replace and not folder.samefile(trajectory.parent):
         refuse_other_run(folder / f"{trajectory.stem}.npz", [video], record.scenario)
-    typer.echo(_film(record, video, speed))
+    typer.echo(film.make(record, video))
 
 
-def _film(trajectory: Trajectory, path: Path, speed: float) -> Path:
-    """Record the video, showing how far it is, and return its path."""
-    from fuzzyq_bullet.video import record
+def driven(task: Scenario) -> Trajectory:
+    """Drive a scenario, every obstacle listed, showing how far it is."""
+    from fuzzyq_bullet import episode
 
-    with progress_bar("filming") as (progress, bar):
-        record(
-            trajectory,
-            path,
-            speed=speed,
-            progress=lambda done, total: progress.update(
-                bar, completed=done, total=total, note=f"{done} of {total} frames"
+    # A planner may print; stdout is for the result.
+    with (
+        redirect_stdout(sys.stderr),
+        progress_bar("driving", task.limits.time) as (progress, bar),
+    ):
+        return episode.run(
+            task,
+            progress=lambda time, to_goal: progress.update(
+                bar, completed=time, note=f"{time:5.1f} s, {to_goal:4.1f} m to go"
             ),
         )
-    return path
 
 
 def asked_for(scenario: Scenario, **options: Any) -> Scenario:

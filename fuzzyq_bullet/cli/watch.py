@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from fuzzyq_bullet.cli.options import PlannerOption, PluginOption, SpeedOption, say
+from fuzzyq_bullet.cli.film import SpeedOption
+from fuzzyq_bullet.cli.options import PlannerOption, PluginOption, say
 from fuzzyq_bullet.cli.run import asked_for, summarise
 
 

@@ -29,6 +29,8 @@ NOTHING = -1
 """What a picture's mask holds where nothing is seen."""
 MAX_SIZE = 8192
 """Most pixels along a side of a picture; absurd sizes would kill the process."""
+_MOST_PIXELS = 4_000_000
+"""Pixels taken at a time: PyBullet needs some 100 bytes for each."""
 
 _AROUND = np.arange(16) * (math.tau / 16)
 _RIM, _LID = 0.004, 0.007
@@ -194,7 +196,13 @@ def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Pic
     """
     with Engine() as engine:
         owner = [add_mesh(engine, mesh) for mesh in meshes]
-        picture = shoot(engine, lens, (0, 0, *lens.size), oversampling)
+        width, height = lens.size
+        rows = max(_MOST_PIXELS // (width * oversampling**2), 1)
+        strips = [
+            shoot(engine, lens, (0, top, width, min(top + rows, height)), oversampling)
+            for top in range(0, height, rows)
+        ]
+    picture = Picture(*(np.concatenate(parts) for parts in zip(*strips, strict=True)))
     lookup = np.full(max(owner, default=0) + 2, NOTHING, dtype=np.int32)
     for index, body in enumerate(owner):
         lookup[body] = index

@@ -18,12 +18,14 @@ from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
 
-_CLOCK = Rect(HEADER.right - 240, HEADER.y, 240, HEADER.height)
+_CLOCK = 240
+"""Width of the clock (points)."""
 _BADGE = 176
 _PILL = (164, 38)
 _BADGES = (19, 17, 15, 13)
-_CARD = Rect(SCENE.x + 40, SCENE.y + 20, 800, 132)
-_LOWER = SCENE.bottom - 20 - _CARD.height
+_CARD = (800, 132)
+_FROM_EDGE = 20
+"""How far the card of the outcome lies from the upper or lower edge of the scene (points)."""
 _MODE_COLOURS = {"routine": style.LINE, "breakout": style.TARGET, "following": style.TARGET}
 
 _OUTCOMES = {
@@ -32,6 +34,13 @@ _OUTCOMES = {
     "timeout": ("TIME IS UP", style.HEAT),
     "stuck": ("STUCK: no way on", style.HEAT),
 }
+SHORT_OUTCOMES = {
+    "goal": ("GOAL", style.GOAL),
+    "collision": ("COLLISION", style.DANGER),
+    "timeout": ("TIME IS UP", style.HEAT),
+    "stuck": ("STUCK", style.HEAT),
+}
+"""Each outcome in a word or two, and its colour."""
 _ENDINGS = {
     "goal": "In the goal",
     "collision": "Ran into something",
@@ -45,28 +54,44 @@ def planner_name(trajectory: Trajectory) -> str:
     return str(getattr(trajectory.scenario.planner, "name", None) or "unknown planner")
 
 
-def caption(trajectory: Trajectory) -> DirtyRegion:
-    """Return the line that says which scenario, planner and seed this is."""
+def caption(trajectory: Trajectory, rect: Rect = HEADER, unit: float = 1.0) -> DirtyRegion:
+    """Return the line that says which scenario, planner and seed this is.
+
+    Args:
+        trajectory: The run.
+        rect: Where it lies in the frame, the clock at its right end included.
+        unit: Pixels a point; see ``Layout``.
+    """
     scenario = trajectory.scenario
-    image = Image.new("RGB", HEADER.size, style.PAGE)
+    image = Image.new("RGB", rect.size, style.PAGE)
     details = f"planner {planner_name(trajectory)}   seed {scenario.seed}"
     if scenario.drive == "kinematic":
         details += "   kinematic drive"
-    room = HEADER.width - _CLOCK.width - 24
-    details, small = style.fitting(details, room * 0.7, (20, 18, 16))
+    room = rect.width - (_CLOCK + 24) * unit
+    details, small = style.fitting(details, room * 0.7, style.scaled((20, 18, 16), unit))
     beside = room - style.text_width(details, small)
-    name, size = style.fitting(scenario.name, beside, (24, 22, 20), bold=True)
-    paint.write(image, (4, 28), name, style.TEXT, size, bold=True)
-    x = 4 + style.text_width(name, size, True) + 24
-    paint.write(image, (x, 28), details, style.MUTED, small)
-    return DirtyRegion(HEADER.x, HEADER.y, image)
+    sizes = style.scaled((24, 22, 20), unit)
+    name, size = style.fitting(scenario.name, beside, sizes, bold=True)
+    paint.write(image, (4 * unit, 28 * unit), name, style.TEXT, size, bold=True)
+    x = style.text_width(name, size, True) + 28 * unit
+    paint.write(image, (x, 28 * unit), details, style.MUTED, small)
+    return DirtyRegion(rect.x, rect.y, image)
 
 
 class Clock:
-    """The time of the run, and how fast it is shown."""
+    """The time of the run, and how fast it is shown.
 
-    def __init__(self, speed: float) -> None:
+    Args:
+        speed: Seconds of the run in one second of video.
+        rect: The line at whose right end it stands.
+        unit: Pixels a point.
+    """
+
+    def __init__(self, speed: float, rect: Rect = HEADER, unit: float = 1.0) -> None:
         self._speed = "" if speed == 1.0 else f"{speed:g}× speed"
+        width = round(_CLOCK * unit / 2) * 2
+        self._rect = Rect(rect.right - width, rect.y, width, rect.height)
+        self._unit = unit
         self._shown = ""
 
     def draw(self, moment: Moment) -> DirtyRegion | None:
@@ -75,23 +100,25 @@ class Clock:
         if text == self._shown:
             return None
         self._shown = text
-        image = Image.new("RGB", _CLOCK.size, style.PAGE)
+        rect, unit = self._rect, self._unit
+        image = Image.new("RGB", rect.size, style.PAGE)
         pen = ImageDraw.Draw(image)
-        paint.write(image, (_CLOCK.width - 4, 28), text, style.TEXT, 24, bold=True, align="r")
-        pen.text((0, 28), self._speed, style.MUTED, style.font(18), anchor="ls")
-        return DirtyRegion(_CLOCK.x, _CLOCK.y, image)
+        at, (big, small) = (rect.width - 4 * unit, 28 * unit), style.scaled((24, 18), unit)
+        paint.write(image, at, text, style.TEXT, big, bold=True, align="r")
+        pen.text((0, 28 * unit), self._speed, style.MUTED, style.font(small), anchor="ls")
+        return DirtyRegion(rect.x, rect.y, image)
 
 
 class Story:
     """The mode of the planner and the reason for its decision, in large letters."""
 
-    def __init__(self, trajectory: Trajectory) -> None:
-        self._trajectory = trajectory
+    def __init__(self, trajectory: Trajectory, rect: Rect = STORY, unit: float = 1.0) -> None:
+        self._trajectory, self._rect, self._unit = trajectory, rect, unit
         self._mode = trajectory.decisions.mode
         # The modes are the paper's. A planner without them is called by its name.
         plain = not (self._mode.any() or has_rules(trajectory.decisions))
         self._badge = planner_name(trajectory).upper() if plain else ""
-        self._card = paint.card(STORY)
+        self._card = paint.card(rect, unit=unit)
         self._decision: tuple[int, bool] | None = None
         self._shown: tuple[str, str] | None = None
 
@@ -105,21 +132,24 @@ class Story:
         if (mode, sentence) == self._shown:
             return None
         self._shown = (mode, sentence)
-        image = self._card.copy()
+        image, unit, rect = self._card.copy(), self._unit, self._rect
         pen = ImageDraw.Draw(image)
         if mode:
             colour = _MODE_COLOURS[mode]
             ink = style.TEXT if colour == style.LINE else style.PAGE
-            pill = paint.mask((0, 0, *_PILL), paint.rounded(_PILL, 19))
-            image.paste(colour, (12, 10), pill)
-            middle = ((12 + _BADGE) / 2, STORY.height / 2 + 7)
-            text, size = style.fitting(self._badge or mode.upper(), _PILL[0] - 20, _BADGES, True)
+            wide, high = round(_PILL[0] * unit), round(_PILL[1] * unit)
+            pill = paint.mask((0, 0, wide, high), paint.rounded((wide, high), 19 * unit))
+            image.paste(colour, (round(12 * unit), round(10 * unit)), pill)
+            middle = ((12 + _BADGE) / 2 * unit, rect.height / 2 + 7 * unit)
+            sizes = style.scaled(_BADGES, unit)
+            text, size = style.fitting(self._badge or mode.upper(), wide - 20 * unit, sizes, True)
             pen.text(middle, text, ink, style.font(size, True), anchor="ms")
-        room = STORY.width - _BADGE - 34
-        text, size = style.fitting(sentence, room, (30, 27, 24, 21, 19), bold=True)
-        y = STORY.height // 2 + round(size * 0.36)
-        paint.write(image, (_BADGE + 18, y), text, style.TEXT, size, bold=True)
-        return DirtyRegion(STORY.x, STORY.y, image)
+        room = rect.width - (_BADGE + 34) * unit
+        sizes = style.scaled((30, 27, 24, 21, 19), unit)
+        text, size = style.fitting(sentence, room, sizes, bold=True)
+        y = rect.height // 2 + round(size * 0.36)
+        paint.write(image, ((_BADGE + 18) * unit, y), text, style.TEXT, size, bold=True)
+        return DirtyRegion(rect.x, rect.y, image)
 
     def sentence(self, decision: int, *, over: bool = False) -> str:
         """Return what is said of a decision; at the end, how the run ended."""
@@ -146,17 +176,31 @@ def outcome_lines(trajectory: Trajectory) -> tuple[str, str]:
     return title, "   ".join(facts)
 
 
-def outcome_card(trajectory: Trajectory, *, low: bool) -> DirtyRegion:
-    """Return the card that closes the video, to be laid over the scene, high or low in it."""
+def outcome_card(
+    trajectory: Trajectory, rect: Rect = SCENE, unit: float = 1.0, *, low: bool
+) -> DirtyRegion:
+    """Return the card that closes the video.
+
+    Args:
+        trajectory: The run.
+        rect: Where the scene lies, over which it is laid.
+        unit: Pixels a point.
+        low: Whether it lies in the lower part of it, else in the upper.
+    """
     title, figures = outcome_lines(trajectory)
     _, colour = _OUTCOMES[trajectory.outcome]
-    image = paint.card(_CARD)
+    unit = min(unit, (rect.width - 40 * unit) / _CARD[0])
+    wide, high, edge = (round(part * unit / 2) * 2 for part in (*_CARD, _FROM_EDGE))
+    left = rect.x + (rect.width - wide) // 4 * 2
+    place = Rect(left, rect.bottom - edge - high if low else rect.y + edge, wide, high)
+    image = paint.card(place, unit=unit)
     pen = ImageDraw.Draw(image)
-    pen.rectangle((0, 0, _CARD.width, 7), colour)
-    pen.rectangle((0, 0, _CARD.width - 1, _CARD.height - 1), outline=colour, width=2)
-    room = _CARD.width - 40
-    title, size = style.fitting(title, room, (40, 36, 32, 28, 26, 24, 22), bold=True)
-    paint.write(image, (_CARD.width / 2, 64), title, colour, size, bold=True, align="m")
-    figures, size = style.fitting(figures, room, (26, 24, 22, 20))
-    paint.write(image, (_CARD.width / 2, 108), figures, style.TEXT, size, align="m")
-    return DirtyRegion(_CARD.x, _LOWER if low else _CARD.y, image)
+    pen.rectangle((0, 0, wide, 7 * unit), colour)
+    pen.rectangle((0, 0, wide - 1, high - 1), outline=colour, width=max(round(2 * unit), 1))
+    room = wide - 40 * unit
+    sizes = style.scaled((40, 36, 32, 28, 26, 24, 22), unit)
+    title, size = style.fitting(title, room, sizes, bold=True)
+    paint.write(image, (wide / 2, 64 * unit), title, colour, size, bold=True, align="m")
+    figures, size = style.fitting(figures, room, style.scaled((26, 24, 22, 20), unit))
+    paint.write(image, (wide / 2, 108 * unit), figures, style.TEXT, size, align="m")
+    return DirtyRegion(place.x, place.y, image)

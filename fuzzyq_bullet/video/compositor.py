@@ -1,20 +1,19 @@
-"""One frame from all its parts: which of them changed at a moment, and how they look now."""
+"""One frame after the other: which parts of a view changed at a moment, and how they look now."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.video.captions import Clock, Story, caption, outcome_card
 from fuzzyq_bullet.video.decision_hold import DecisionHold
-from fuzzyq_bullet.video.map import Map
-from fuzzyq_bullet.video.panels import Panels
-from fuzzyq_bullet.video.scene import Scene
-from fuzzyq_bullet.video.style import SCENE
-from fuzzyq_bullet.video.timeline import Sensed, sensed_at
+from fuzzyq_bullet.video.layout import usual_size
+from fuzzyq_bullet.video.panels import added_panels
+from fuzzyq_bullet.video.panels.base import named
+from fuzzyq_bullet.video.timeline import Timeline
+from fuzzyq_bullet.video.views import Stage, view_factory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable
 
     from fuzzyq_bullet.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
@@ -22,63 +21,58 @@ if TYPE_CHECKING:
 
 
 class Compositor:
-    """All views of one run. Use as a context: the scene holds a renderer.
-
-    Scene and map are live. The panels and the sentence show one decision, the same one.
+    """The frames of one run. Use as a context: a view may hold a renderer.
 
     Args:
         trajectory: The run.
         speed: Seconds of the run in one second of video.
+        view: The name of what is shown.
+        size: Width and height of the frame (pixels); by default the view's usual size.
+
+    Attributes:
+        size: Width and height of the frame (pixels).
+        start: Time of the first moment (s).
+        end: Time of the last (s).
+
+    Raises:
+        UserError: If there is no such view.
     """
 
-    def __init__(self, trajectory: Trajectory, speed: float = 1.0) -> None:
-        self._trajectory = trajectory
-        self._map = Map(trajectory)
-        self._panels = Panels(trajectory)
-        self._clock = Clock(speed)
-        self._story = Story(trajectory)
+    def __init__(
+        self,
+        trajectory: Trajectory,
+        speed: float = 1.0,
+        view: str = "explain",
+        size: tuple[int, int] | None = None,
+    ) -> None:
+        factory = view_factory(view)
+        self.size = size or usual_size(added_panels() if view == "explain" else 0)
+        self._timeline = Timeline(trajectory)
+        self.start, self.end = self._timeline.start, self._timeline.end
         self._hold = DecisionHold(trajectory, speed)
-        self._fresh = True
-        self._decision: int | None = None
-        self._sensed: Sensed | None = None
         self._over = False
-        self._scene = Scene(trajectory)
+        self._name = f"view {view}"
+        with named(self._name):
+            self._view = factory(trajectory, Stage(self.size, speed))
 
     def __enter__(self) -> Compositor:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._scene.close()
+        self._view.close()
 
-    def changes(self, moment: Moment) -> Iterator[DirtyRegion]:
-        """Yield what changed since the last moment; all of the frame, the first time."""
+    def at(self, time: float) -> Iterable[DirtyRegion]:
+        """Return what changed since the last time (s); after the end, how the run ended."""
+        moment = self._timeline.at(time)
+        return self.changes(closing(moment) if time > self.end else moment)
+
+    def changes(self, moment: Moment) -> Iterable[DirtyRegion]:
+        """Return what changed since the last moment; all of the frame, the first time."""
         if self._over and moment.over:
-            return
-        if self._fresh:
-            self._fresh = False
-            yield caption(self._trajectory)
-        if moment.decision != self._decision:
-            self._decision = moment.decision
-            self._sensed = sensed_at(self._trajectory, moment.decision)
-        moment = replace(moment, shown=self._hold.at(moment))
-        sensed = self._sensed
-        hit = (
-            self._trajectory.collision.point if moment.over and self._trajectory.collision else None
-        )
-        for region in (
-            self._scene.draw(moment, sensed, hit),
-            self._map.draw(moment, sensed, hit),
-            *self._panels.changes(moment),
-            self._clock.draw(moment),
-            self._story.draw(moment.shown, over=moment.over),
-        ):
-            if region is not None:
-                yield region
-        if moment.over:
-            self._over = True
-            # Where the run ended must stay in sight.
-            low = self._scene.height_of(moment.position) < SCENE.height / 2
-            yield outcome_card(self._trajectory, low=low)
+            return []
+        self._over = moment.over
+        with named(self._name):
+            return list(self._view.draw(replace(moment, shown=self._hold.at(moment))))
 
 
 def closing(moment: Moment) -> Moment:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import subprocess
 import tempfile
 from contextlib import suppress
+from itertools import pairwise
 from typing import IO, TYPE_CHECKING, Any, TypeAlias
 
-import imageio.v3 as iio
 import imageio_ffmpeg
 import numpy as np
 from PIL import Image
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.filming import FPS
 from fuzzyq_bullet.video.paint import DirtyRegion
-from fuzzyq_bullet.video.style import FPS, HEIGHT, PAGE, WIDTH
+from fuzzyq_bullet.video.style import HEIGHT, PAGE, WIDTH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,9 +25,9 @@ Size: TypeAlias = tuple[int, int]
 
 _PIPE_BYTES = 1 << 20
 """The most that Linux grants to everyone."""
-ANIMATION_FPS = 10
-"""Frames a second: a third of a film's, for pictures that are many times as large."""
 ANIMATION_ENDINGS = (".gif", ".webp")
+_MOST_BYTES = 1_000_000_000
+"""What the frames of an animated picture may take in memory."""
 _OPTIONS: dict[str, dict[str, Any]] = {
     ".gif": {"optimize": True},
     ".webp": {"quality": 55, "method": 4},
@@ -92,6 +93,7 @@ class Encoder:
         name: What to call it in messages; by default its path.
         size: Width and height of the frames (pixels).
         small: Half as wide and half as high, for a page with many films.
+        fps: Frames a second.
 
     Raises:
         UserError: If ffmpeg is missing, cannot be started, or fails (a full disk, for example).
@@ -104,9 +106,10 @@ class Encoder:
         *,
         size: Size = (WIDTH, HEIGHT),
         small: bool = False,
+        fps: int = FPS,
     ) -> None:
         self._path = path
-        self._size, self._small = size, small
+        self._size, self._small, self._fps = size, small, fps
         self._name = name or path
 
     def __enter__(self) -> Encoder:
@@ -120,7 +123,7 @@ class Encoder:
         self._complaints: IO[bytes] = tempfile.TemporaryFile()
         try:
             self._process = subprocess.Popen(
-                [program, *_arguments(self._path, self._size, self._small)],
+                [program, *_arguments(self._path, self._size, self._small, self._fps)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=self._complaints,
@@ -176,20 +179,38 @@ class Encoder:
 class Animation:
     """Writes one animated picture, which plays again and again.
 
-    All frames are held in memory until the end, 0.7 MB each: it is for short runs. Leaving the
-    block in peace writes the file.
+    All frames are held in memory until the end: it is for short runs. Leaving the block in peace
+    writes the file. Frames that are alike become one that is shown for longer.
 
     Args:
         path: Where the file is to be written; its ending chooses the kind.
         name: What to call it in messages.
-        size: Width and height of the frames (pixels); the picture is half as wide and high.
+        size: Width and height of the frames that are handed over (pixels).
+        shown: Width and height of the picture (pixels).
+        fps: Frames a second.
+        count: How many frames there will be.
+
+    Raises:
+        UserError: If there would be more than memory has room for.
     """
 
-    def __init__(self, path: Path, name: Path, size: Size = (WIDTH, HEIGHT)) -> None:
-        self._path, self._name = path, name
+    def __init__(
+        self, path: Path, name: Path, size: Size, shown: Size, fps: int, count: int
+    ) -> None:
+        self._path, self._name, self._shown = path, name, shown
+        self._gif = path.suffix.lower() == ".gif"
+        if count * shown[0] * shown[1] * (1 if self._gif else 3) > _MOST_BYTES:
+            raise UserError(
+                f"{name}: too large for an animated picture: {count} frames of "
+                f"{shown[0]}x{shown[1]}; make it smaller, or shorter, or a film (.mp4)"
+            )
+        # A GIF counts hundredths of a second: each frame ends at the nearest to its time.
+        tick = 10 if self._gif else 1
+        ends = [round(1000 / tick * number / fps) * tick for number in range(count + 1)]
+        self._durations = [end - begin for begin, end in pairwise(ends)]
         self._frame = Image.new("RGB", size, PAGE)
         self._palette: Image.Image | None = None
-        self._frames: list[np.ndarray[Any, np.dtype[np.uint8]]] = []
+        self._frames: list[Image.Image] = []
 
     def __enter__(self) -> Animation:
         return self
@@ -198,30 +219,29 @@ class Animation:
         """Append a frame: the one before, with these parts of it drawn anew."""
         for part in changes:
             self._frame.paste(part.image, (part.x, part.y))
-        small = self._frame.resize(
-            (self._frame.width // 2, self._frame.height // 2), Image.Resampling.LANCZOS
-        )
-        if self._path.suffix.lower() == ".gif":
+        image = self._frame
+        if image.size != self._shown:
+            image = image.resize(self._shown, Image.Resampling.LANCZOS)
+        if self._gif:
             # One palette for all frames: where nothing changes, they are the same to the bit.
-            self._palette = self._palette or small.quantize(
+            self._palette = self._palette or image.quantize(
                 255, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
             )
-            small = small.quantize(palette=self._palette, dither=Image.Dither.NONE).convert("RGB")
-        self._frames.append(np.asarray(small))
+            image = image.quantize(palette=self._palette, dither=Image.Dither.NONE)
+        self._frames.append(image if image is not self._frame else image.copy())
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None:
             return
-        ending = self._path.suffix.lower()
+        first, *others = self._frames
         try:
-            iio.imwrite(
+            first.save(
                 self._path,
-                np.stack(self._frames),
-                plugin="pillow",
-                extension=ending,
-                duration=1000 // ANIMATION_FPS,
+                save_all=True,
+                append_images=others,
+                duration=self._durations,
                 loop=0,
-                **_OPTIONS[ending],
+                **_OPTIONS[self._path.suffix.lower()],
             )
         except (OSError, ValueError) as error:
             why = getattr(error, "strerror", None) or error
@@ -237,7 +257,7 @@ def _widen(pipe: IO[bytes] | None) -> None:
         fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, _PIPE_BYTES)
 
 
-def _arguments(path: Path, frame: Size, small: bool) -> list[str]:
+def _arguments(path: Path, frame: Size, small: bool, fps: int) -> list[str]:
     # The film's colours are those of HDTV. Output tags alone would make ffmpeg convert to them.
     colours = ["-color_range", "tv", "-colorspace", "bt709"]
     colours += ["-color_primaries", "bt709", "-color_trc", "bt709"]
@@ -246,7 +266,7 @@ def _arguments(path: Path, frame: Size, small: bool) -> list[str]:
     quality = ["-preset", "slow", "-crf", "25"] if small else ["-preset", "veryfast", "-crf", "20"]
     return [
         *("-hide_banner", "-loglevel", "error", "-nostats", "-y"),
-        *("-f", "rawvideo", "-pix_fmt", "yuv420p", "-s", f"{frame[0]}x{frame[1]}", "-r", str(FPS)),
+        *("-f", "rawvideo", "-pix_fmt", "yuv420p", "-s", f"{frame[0]}x{frame[1]}", "-r", str(fps)),
         *(*colours, "-i", "pipe:0", *size, *colours, "-an", "-map_metadata", "-1"),
         *("-c:v", "libx264", *quality, "-pix_fmt", "yuv420p"),
         # A fixed number of threads: the same bytes on machines of any number of cores.

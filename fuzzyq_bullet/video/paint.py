@@ -25,8 +25,8 @@ SMOOTH = 3
 """How many times larger shapes are drawn that stay."""
 SWIFT = 2
 """The same for those that move: good enough to the eye, and half the work."""
-_TRAIL_WIDTH = 2.4
-_TRAIL_STEP = 1.5
+_SUPPORT = 6
+"""How far a pixel reaches where a picture is enlarged (pixels)."""
 _FAR = 20_000.0
 """Pillow draws nothing sensible beyond some tens of thousands of pixels."""
 
@@ -235,105 +235,31 @@ def joined(boxes: Iterable[Box | None]) -> Box | None:
     return min(left), min(top), max(right), max(bottom)
 
 
-class Trail:
-    """A picture over which the robot's way grows; it looks the same in however many pieces.
-
-    Args:
-        background: The picture without it.
-        positions: All points of the way (m), shape (T, 2).
-        project: Turns points (m), shape (N, 2), into pixels of the picture.
-        allowed: Where it may be seen, as coverage (mode L); None for everywhere.
-
-    Attributes:
-        image: The picture with the way so far.
-    """
-
-    def __init__(
-        self,
-        background: Image.Image,
-        positions: Floats,
-        project: Callable[[ArrayLike], Floats],
-        allowed: Image.Image | None = None,
-    ) -> None:
-        self.image = background.copy()
-        self._background = background
-        self._positions = positions
-        self._project = project
-        self._allowed = allowed
-        self._line = Image.new("L", background.size, 0)
-        self._tick = 0
-        self._below: Inked | None = None
-        self._above: list[Inked] = []
-        self._pinned: list[Inked] = []
-
-    def lay_below(self, shape: Inked | None) -> Box | None:
-        """Show one shape beneath the way, in place of the last; return the box that changed."""
-        boxes = [one[1].box for one in (self._below, shape) if one is not None]
-        self._below = shape
-        for box in boxes:
-            self._compose(box)
-        return joined(boxes)
-
-    def lay_above(self, shapes: Sequence[Inked]) -> Box | None:
-        """Show further shapes on top of the way for good; return the box that changed."""
-        self._above += shapes
-        for _, drawn in shapes:
-            self._compose(drawn.box)
-        return joined(drawn.box for _, drawn in shapes)
-
-    def pin(self, shapes: Sequence[Inked]) -> Box | None:
-        """Show shapes on top of all, in place of the last pinned; return the box that changed."""
-        boxes = [drawn.box for _, drawn in (*self._pinned, *shapes)]
-        self._pinned = list(shapes)
-        for box in boxes:
-            self._compose(box)
-        return joined(boxes)
-
-    def follow(self, tick: int) -> Box | None:
-        """Draw the way up to a tick and return the box that changed.
-
-        Its last pixels, which the robot covers, wait until there are a few.
-        """
-        if tick <= self._tick:
-            return None
-        ends = self._project(self._positions[[self._tick, tick]])
-        if np.abs(ends[1] - ends[0]).max() < _TRAIL_STEP:
-            return None
-        points = self._project(self._positions[self._tick : tick + 1])
-        self._tick = tick
-        piece = layer(
-            points,
-            _TRAIL_WIDTH + 1,
-            self.image.size,
-            lambda pen, at: polyline(pen, at(points), 255, _TRAIL_WIDTH * at.factor),
-            self._allowed,
-        )
-        if piece is None:
-            return None
-        # The greater of the two, not the sum: overlapping ends must not show.
-        line = ImageChops.lighter(piece.cover, self._line.crop(piece.box))
-        self._line.paste(line, piece.box)
-        self._compose(piece.box)
-        return piece.box
-
-    def _compose(self, box: Box) -> None:
-        patch = self._background.crop(box)
-        if self._below is not None:
-            self._below[1].lay(patch, box, self._below[0])
-        patch.paste(style.PATH, mask=self._line.crop(box))
-        for colour, drawn in (*self._above, *self._pinned):
-            drawn.lay(patch, box, colour)
-        self.image.paste(patch, box)
-
-
-def card(rect: Rect, title: str = "") -> Image.Image:
-    """Return the picture of an empty card with its title."""
+def card(rect: Rect, title: str = "", unit: float = 1.0) -> Image.Image:
+    """Return the picture of an empty card with its title; ``unit`` is pixels a point."""
     image = Image.new("RGB", rect.size, style.PAGE)
-    image.paste(style.CARD, mask=mask((0, 0, *rect.size), rounded(rect.size)))
-    write(image, (12, 20), title, style.MUTED, 16, bold=True)
+    image.paste(style.CARD, mask=mask((0, 0, *rect.size), rounded(rect.size, 9.0 * unit)))
+    (size,) = style.scaled((16,), unit)
+    write(image, (12 * unit, 20 * unit), title, style.MUTED, size, bold=True)
     return image
 
 
-def region_of(rect: Rect, image: Image.Image, box: Box) -> DirtyRegion:
-    """Return the part ``box`` of the picture of ``rect`` as one of the frame."""
-    return DirtyRegion(rect.x + box[0], rect.y + box[1], image.crop(box))
+def region_of(place: Rect, image: Image.Image, box: Box) -> DirtyRegion:
+    """Return the part ``box`` of a picture as one of the frame, in which the picture is ``place``.
+
+    A picture of another size is enlarged or reduced.
+    """
+    if image.size == place.size:
+        return DirtyRegion(place.x + box[0], place.y + box[1], image.crop(box))
+    factors = place.width / image.width, place.height / image.height
+    edges = np.reshape(box, (2, 2)) * factors
+    near = box_around(edges, _SUPPORT, place.size)
+    wide = box_around(edges, 2 * _SUPPORT, place.size)
+    assert near is not None
+    assert wide is not None
+    (x0, y0), (x1, y1) = (np.reshape(wide, (2, 2)) / factors).tolist()
+    size = (wide[2] - wide[0], wide[3] - wide[1])
+    resampled = image.resize(size, Image.Resampling.LANCZOS, box=(x0, y0, x1, y1))
+    left, top = near[0] - wide[0], near[1] - wide[1]
+    part = resampled.crop((left, top, left + near[2] - near[0], top + near[3] - near[1]))
+    return DirtyRegion(place.x + near[0], place.y + near[1], part)

@@ -1,4 +1,4 @@
-"""The 3-D view: the still world once, and in every frame the robot and what it senses."""
+"""The 3-D view: the still world once a shot, and in every frame the robot and what it senses."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ from PIL import Image, ImageChops, ImageDraw
 
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera, photograph
 from fuzzyq_bullet.video import meshes, paint, style
+from fuzzyq_bullet.video.cameras import Camera, FixedCamera
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
-from fuzzyq_bullet.video.shots import SPAN, Shot, Shots
-from fuzzyq_bullet.video.style import SCENE
+from fuzzyq_bullet.video.shots import SPAN, Shot
+from fuzzyq_bullet.video.style import SCENE, Rect
 from fuzzyq_bullet.video.timeline import Sensed, Steady
-from fuzzyq_bullet.video.viewpoint import extent_of, lens_for
+from fuzzyq_bullet.video.trail import Trail
+from fuzzyq_bullet.video.viewpoint import extent_of
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
@@ -30,19 +32,34 @@ _FILL, _EDGE = 88, 235
 _SHADOW = np.array([(np.cos(a), np.sin(a)) for a in np.arange(20) * np.pi / 10]) * 0.225
 """Outline of the robot's shadow about its centre (m)."""
 _SMALLEST = 26.0
-"""A robot that covers fewer pixels than this gets a ring around it."""
+"""A robot that covers fewer points than this gets a ring around it."""
 
 
 class Scene:
     """The 3-D view of one run.
 
+    Args:
+        trajectory: The run.
+        rect: Where it lies in the frame (pixels).
+        unit: Pixels a point; see ``Layout``.
+        camera: Films it; by default one that stands still as long as it can.
+        framed: Whether it is a card with round corners.
+
     Attributes:
-        lens: The camera of the shot, whose picture is the card ``style.SCENE``.
+        lens: What the camera sees in this shot; its picture is ``rect``, or larger.
     """
 
-    def __init__(self, trajectory: Trajectory) -> None:
-        self._trajectory = trajectory
-        self._shots = Shots(trajectory)
+    def __init__(
+        self,
+        trajectory: Trajectory,
+        rect: Rect = SCENE,
+        unit: float = 1.0,
+        *,
+        camera: Camera | None = None,
+        framed: bool = True,
+    ) -> None:
+        self._trajectory, self._rect, self._unit, self._framed = trajectory, rect, unit, framed
+        self._camera = camera or FixedCamera(trajectory, rect.size)
         self._open = ExitStack()
         self._cut_to(0)
 
@@ -51,24 +68,29 @@ class Scene:
         self._open.close()
 
     def _cut_to(self, number: int) -> None:
-        """Begin a shot: another camera, the still world as it sees it, and the way so far."""
+        """Begin a shot: another lens, the still world as it sees it, and the way so far."""
         self._open.close()
         trajectory, self._shot = self._trajectory, number
-        self.lens = lens_for(trajectory, self._shots[number].points, SCENE.size)
-        picture, ground = _still(trajectory, self._shots[number], self.lens)
+        self.lens = lens = self._camera.lens(number)
+        picture, ground = _still(trajectory, self._camera.shots[number], lens)
         self._depth = picture.depth
         self._ground = ground
-        still = _decorated(picture, ground, trajectory, self.lens)
-        self._trail = paint.Trail(still, trajectory.ticks.position, self._seen, ground)
+        still = _decorated(picture, ground, trajectory, lens, self._unit)
+        if self._framed:
+            corners = paint.mask((0, 0, *lens.size), paint.rounded(lens.size, 9.0 * self._unit))
+            still = Image.composite(still, Image.new("RGB", lens.size, style.PAGE), corners)
+        positions = trajectory.ticks.position
+        self._trail = Trail(still, positions, self._seen, ground, self._unit)
         self._sensed: Sensed | None = None
         self._aim: tuple[float, float] | None = None
-        away = math.dist(self.lens.eye, self.lens.target)
-        self._steady = Steady(self.lens.pixels_per_radian() / away)
+        away = math.dist(lens.eye, lens.target)
+        self._steady = Steady(lens.pixels_per_radian() / away)
         self._stains: list[tuple[style.Colour, paint.Layer]] = []
-        self._changed: paint.Box | None = (0, 0, *SCENE.size)
+        self._changed: paint.Box | None = (0, 0, *lens.size)
+        self._window: paint.Box | None = None
         with ExitStack() as stack:
             self._robot = stack.enter_context(
-                RobotCamera(self.lens, trajectory.scenario.robot.spec, DETAIL)
+                RobotCamera(lens, trajectory.scenario.robot.spec, DETAIL)
             )
             self._open = stack.pop_all()
 
@@ -76,11 +98,15 @@ class Scene:
         self, moment: Moment, sensed: Sensed | None, hit: tuple[float, float] | None = None
     ) -> DirtyRegion | None:
         """Return what changed since the last moment drawn; ``hit`` marks a collision (m)."""
-        shot = self._shots.at(moment.tick)
+        shot = self._camera.shots.at(moment.tick)
         if shot != self._shot:
             self._cut_to(shot)
-        if not self._steady.moved(moment) and sensed is self._sensed:
+        frame = self._camera.window(self.lens, moment)
+        moved = self._steady.moved(moment) or frame != self._window
+        if not moved and sensed is self._sensed:
             return None
+        self._window = frame
+        unit, size = self._unit, self.lens.size
         grown = paint.joined(
             [
                 self._trail.follow(moment.tick),
@@ -100,14 +126,16 @@ class Scene:
         if shadow is not None:
             parts.append(shadow.box)
         if window is not None:
-            parts.append(paint.box_around(np.reshape(window, (2, 2)), 16, SCENE.size))
+            parts.append(paint.box_around(np.reshape(window, (2, 2)), 16 * unit, size))
         if target is not None:
-            parts.append(paint.box_around(target, 14, SCENE.size))
+            parts.append(paint.box_around(target, 14 * unit, size))
         if hit is not None:
-            parts.append(paint.box_around(self._seen([hit]), 20, SCENE.size))
+            parts.append(paint.box_around(self._seen([hit]), 20 * unit, size))
         now = paint.joined(parts)
         box = paint.joined([now, self._changed, grown])
         self._changed = now
+        if frame != (0, 0, *size):  # a part of the picture, all of which moves
+            box = frame
         if box is None:
             return None
 
@@ -117,23 +145,30 @@ class Scene:
         if shadow is not None:
             shadow.lay(image, box, style.SHADOW)
         if target is not None:
-            diamond(image, box, target, 9.0)
+            diamond(image, box, target, 9.0, unit)
         if window is not None:
             self._place_robot(image, box, window, moment)
         if hit is not None:
-            cross(image, box, self._seen([hit])[0], 11.0)
-        return DirtyRegion(SCENE.x + box[0], SCENE.y + box[1], image)
+            cross(image, box, self._seen([hit])[0], 11.0, unit)
+        left, top = box[0] - frame[0], box[1] - frame[1]
+        return DirtyRegion(self._rect.x + left, self._rect.y + top, image)
 
     def height_of(self, position: tuple[float, float]) -> float:
-        """Return how far down in the picture a point of the ground (m) is seen (pixels)."""
-        return float(np.nan_to_num(self._seen([position])[0, 1]))
+        """Return how far down a point of the ground (m) is seen, as a part of the frame's height.
+
+        Before the first moment is drawn, of all that the lens sees.
+        """
+        _, top, _, bottom = self._window or (0, 0, *self.lens.size)
+        return float(np.nan_to_num(self._seen([position])[0, 1]) - top) / (bottom - top)
 
     def _point_at(self, aim: tuple[float, float] | None) -> paint.Box | None:
         """Mark the aim (m)."""
         if aim == self._aim:
             return None
         self._aim = aim
-        return self._trail.pin([] if aim is None else reticle(self._seen([aim])[0], SCENE.size))
+        if aim is None:
+            return self._trail.pin([])
+        return self._trail.pin(reticle(self._seen([aim])[0], self.lens.size, unit=self._unit))
 
     def _seen(self, points: ArrayLike) -> Floats:
         flat = np.asarray(points, dtype=np.float64).reshape(-1, 2)
@@ -156,9 +191,10 @@ class Scene:
             if len(points) >= 3:
                 pen.polygon(points, fill=fill)
                 if edge:
-                    pen.line([*points, points[0]], edge, round(1.7 * scaled.factor))
+                    pen.line([*points, points[0]], edge, round(1.7 * self._unit * scaled.factor))
 
-        return paint.layer(seen, 3, SCENE.size, draw, self._ground, paint.SWIFT)
+        size, margin = self.lens.size, 3 * self._unit
+        return paint.layer(seen, margin, size, draw, self._ground, paint.SWIFT)
 
     def _place_robot(
         self, image: Image.Image, box: paint.Box, window: paint.Box, moment: Moment
@@ -178,14 +214,15 @@ class Scene:
         bare = image.crop(here)
         bare.paste((0, 0, 0), mask=cover)
         image.paste(ImageChops.add(bare, small), here)
-        if right - left < _SMALLEST:
+        unit = self._unit
+        if right - left < _SMALLEST * unit:
             centre = ((left + right) / 2, (top + bottom) / 2)
 
             def ring(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
-                outer = scaled.disc(centre, _SMALLEST / 2)
-                pen.ellipse(outer, outline=255, width=2 * scaled.factor)
+                outer = scaled.disc(centre, _SMALLEST / 2 * unit)
+                pen.ellipse(outer, outline=255, width=round(2 * unit * scaled.factor))
 
-            paint.stamp(image, box, [centre], _SMALLEST / 2 + 2, style.ROBOT, ring)
+            paint.stamp(image, box, [centre], (_SMALLEST / 2 + 2) * unit, style.ROBOT, ring)
 
 
 def still_meshes(trajectory: Trajectory, shot: Shot, lens: Lens) -> tuple[list[Mesh], bool]:
@@ -213,13 +250,13 @@ def _still(trajectory: Trajectory, shot: Shot, lens: Lens) -> tuple[Picture, Ima
 
 
 def _decorated(
-    picture: Picture, ground: Image.Image, trajectory: Trajectory, lens: Lens
+    picture: Picture, ground: Image.Image, trajectory: Trajectory, lens: Lens, unit: float
 ) -> Image.Image:
     """Return the still picture with what is painted on the ground: grid, shadows, start, goal."""
     colour = picture.colour.copy()
     colour[picture.mask < 0] = style.CARD
     image = Image.fromarray(colour).reduce(DETAIL)
-    box = (0, 0, *SCENE.size)
+    box = (0, 0, *lens.size)
     scenario = trajectory.scenario
 
     def seen(points: ArrayLike) -> Floats:
@@ -236,9 +273,9 @@ def _decorated(
 
     def grid(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
         for x in np.arange(np.ceil(low[0] / step), high[0] / step) * step:
-            pen.line(scaled(seen([(x, low[1]), (x, high[1])])), 255, scaled.factor)
+            pen.line(scaled(seen([(x, low[1]), (x, high[1])])), 255, round(unit * scaled.factor))
         for y in np.arange(np.ceil(low[1] / step), high[1] / step) * step:
-            pen.line(scaled(seen([(low[0], y), (high[0], y)])), 255, scaled.factor)
+            pen.line(scaled(seen([(low[0], y), (high[0], y)])), 255, round(unit * scaled.factor))
 
     def shadows(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
         for outline in meshes.obstacles_seen(scenario, lens, area):
@@ -248,11 +285,11 @@ def _decorated(
     def goal(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
         around = scaled(ring(scenario.goal.position, scenario.goal.radius))
         pen.polygon(around, fill=110)
-        pen.line(around, 255, 2 * scaled.factor, joint="curve")
+        pen.line(around, 255, round(2 * unit * scaled.factor), joint="curve")
 
     def start(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
         around = scaled(ring(scenario.start.position, scenario.robot.radius))
-        pen.line(around, 200, round(1.5 * scaled.factor), joint="curve")
+        pen.line(around, 200, round(1.5 * unit * scaled.factor), joint="curve")
 
     for draw, tint in (
         (grid, style.GRID),
@@ -261,7 +298,4 @@ def _decorated(
         (goal, style.GOAL),
     ):
         image.paste(tint, mask=ImageChops.multiply(paint.mask(box, draw), ground))
-    corners = paint.mask(box, paint.rounded(SCENE.size))
-    framed = Image.new("RGB", SCENE.size, style.PAGE)
-    framed.paste(image, mask=corners)
-    return framed
+    return image

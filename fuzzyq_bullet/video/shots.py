@@ -41,14 +41,20 @@ class Shot(NamedTuple):
 
 
 class Shots:
-    """The shots of one run, which depend on nothing but its record."""
+    """The shots of one run, which depend on nothing but its record.
 
-    def __init__(self, trajectory: Trajectory) -> None:
+    Args:
+        trajectory: The run.
+        whole: A way that spans no more (m) is one shot.
+        span: What the robot drives in each of several shots spans so much at most (m).
+    """
+
+    def __init__(self, trajectory: Trajectory, whole: float = WHOLE, span: float = SPAN) -> None:
         points = way(trajectory)
-        if np.ptp(points, axis=0).max() <= WHOLE:
+        if np.ptp(points, axis=0).max() <= whole:
             self._shots = [Shot(0, points, whole=True)]
         else:
-            self._shots = _divided(trajectory)
+            self._shots = _divided(trajectory, span)
         self._ticks = [shot.tick for shot in self._shots]
 
     def __getitem__(self, number: int) -> Shot:
@@ -62,13 +68,13 @@ class Shots:
         return bisect_right(self._ticks, tick) - 1
 
 
-def _divided(trajectory: Trajectory) -> list[Shot]:
+def _divided(trajectory: Trajectory, span: float) -> list[Shot]:
     path, goal = trajectory.ticks.position, trajectory.scenario.goal.position
     firsts = [0]
     low = high = path[0]
     for tick, place in enumerate(path):
         low, high = np.minimum(low, place), np.maximum(high, place)
-        if (high - low).max() > SPAN:
+        if (high - low).max() > span:
             firsts.append(tick)
             low = high = place
     found = []

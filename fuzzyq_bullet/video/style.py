@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import math
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -14,7 +13,6 @@ Colour: TypeAlias = tuple[int, int, int]
 Font: TypeAlias = ImageFont.FreeTypeFont | ImageFont.ImageFont
 
 WIDTH, HEIGHT = 1280, 720
-FPS = 30
 
 
 class Rect(NamedTuple):
@@ -50,27 +48,6 @@ SENSORS = Rect(10, 498, 316, 212)
 FUZZIFICATION = Rect(334, 498, 274, 212)
 RULES = Rect(616, 498, 274, 212)
 ACTION = Rect(898, 498, 372, 212)
-
-_ADDED_HEIGHT, _GAP, _ROW = 160, 8, 4
-"""Panels of a user's own: how high they are, what lies between them, how many share a row."""
-
-
-def places_below(count: int) -> list[Rect]:
-    """Return places for ``count`` more panels, in rows below all others."""
-    places = []
-    for first in range(0, count, _ROW):
-        number = min(count - first, _ROW)
-        width = (HEADER.width - (number - 1) * _GAP) // number // 2 * 2
-        top = SENSORS.bottom + _GAP + first // _ROW * (_ADDED_HEIGHT + _GAP)
-        lefts = (HEADER.x + k * (width + _GAP) for k in range(number))
-        places += [Rect(left, top, width, _ADDED_HEIGHT) for left in lefts]
-    return places
-
-
-def frame_size(added: int = 0) -> tuple[int, int]:
-    """Return width and height (pixels) of a frame with so many more panels."""
-    return WIDTH, HEIGHT + math.ceil(added / _ROW) * (_ADDED_HEIGHT + _GAP)
-
 
 PAGE: Colour = (13, 16, 21)
 CARD: Colour = (24, 29, 37)
@@ -127,6 +104,11 @@ def fitting(text: str, width: float, sizes: tuple[int, ...], bold: bool = False)
     while text and text_width(text + "…", size, bold) > width:
         text = text[:-1]
     return text.rstrip() + "…", size
+
+
+def scaled(sizes: tuple[int, ...], unit: float) -> tuple[int, ...]:
+    """Return sizes of letters in points as pixels."""
+    return tuple(max(round(size * unit), 1) for size in sizes)
 
 
 def mixed(a: Colour, b: Colour, part: float) -> Colour:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet.video import register_panel, style
+from fuzzyq_bullet.video.layout import Layout, usual_size
 
 if TYPE_CHECKING:
     from tests.helpers.commands import Call
@@ -68,9 +69,11 @@ def test_a_panel_that_fails_is_one_line_that_names_it(
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 9])
 def test_any_number_of_panels_has_room_without_covering_anything(count: int) -> None:
-    width, height = style.frame_size(count)
-    places = style.places_below(count)
+    width, height = usual_size(count)
+    layout = Layout.explaining((width, height), count)
+    places = [layout.place(name) for name in layout.cards if name.startswith("added")]
     assert len(places) == count
+    assert layout.place("sensors") == style.SENSORS, "where it always is"
     for place in places:
         assert all(value % 2 == 0 for value in place)
         assert place.y >= style.SENSORS.bottom
@@ -79,7 +82,7 @@ def test_any_number_of_panels_has_room_without_covering_anything(count: int) -> 
     for a, b in combinations(places, 2):
         assert a.right <= b.x or a.bottom <= b.y
     assert (width % 4, height % 4) == (0, 0), "half of it is a small film, which is even too"
-    assert style.frame_size(0) == (style.WIDTH, style.HEIGHT)
+    assert usual_size() == (style.WIDTH, style.HEIGHT)
 
 
 def test_a_name_is_given_once() -> None:

@@ -31,7 +31,7 @@ _WIDEST = math.radians(100.0)
 """A turn beyond this leaves the dial's needle at its end."""
 
 
-@register_panel("action", title="4  ACTS", place=ACTION)
+@register_panel("action", title="4  ACTS", place="action")
 class Action:
     """Panel 4 of one run."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import count
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeVar
 
 from numpy.typing import ArrayLike
@@ -17,6 +18,7 @@ from fuzzyq_bullet.wording import error_in_words
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video.layout import Layout
     from fuzzyq_bullet.video.style import Colour, Rect
     from fuzzyq_bullet.video.timeline import Moment
 
@@ -24,24 +26,26 @@ if TYPE_CHECKING:
 class Canvas:
     """The card of one panel. What is drawn stays until something is drawn over it.
 
-    Points are pixels, x to the right and y down from the card's upper left corner.
+    Points are counted to the right and down from the card's upper left corner. In a film of the
+    usual size a point is a pixel; in a larger film the card is enlarged.
 
     Args:
-        rect: Where in the frame the card lies.
-        title: What is written at its top; 26 pixels there are the title's.
+        card: Where in the frame the card lies (points).
+        title: What is written at its top; 26 points there are the title's.
+        place: The same in pixels; by default a point is a pixel.
 
     Attributes:
         image: The card, RGB. Whoever draws on it directly calls ``changed``.
-        width: Its width (pixels).
-        height: Its height (pixels).
+        width: Its width (points).
+        height: Its height (points).
     """
 
-    def __init__(self, rect: Rect, title: str) -> None:
-        self.width, self.height = rect.size
-        self.image = paint.card(rect, title)
-        self._rect = rect
+    def __init__(self, card: Rect, title: str, place: Rect | None = None) -> None:
+        self.width, self.height = card.size
+        self.image = paint.card(card, title)
+        self._place = place or card
         self._blank = self.image.copy()
-        self._changed: list[paint.Box] = [(0, 0, *rect.size)]
+        self._changed: list[paint.Box] = [(0, 0, *card.size)]
 
     def rename(self, title: str) -> None:
         """Write another title in place of the one that was given; the rest is left as it is."""
@@ -109,7 +113,7 @@ class Canvas:
         all_of_it = (0, 0, self.width, self.height)
         boxes = [all_of_it] if all_of_it in self._changed else self._changed
         self._changed = []
-        return [paint.region_of(self._rect, self.image, box) for box in boxes]
+        return [paint.region_of(self._place, self.image, box) for box in boxes]
 
 
 class Panel(Protocol):
@@ -127,14 +131,14 @@ _F = TypeVar("_F", bound=PanelFactory)
 class _Entry:
     title: str
     factory: PanelFactory
-    place: Rect | None
+    place: str | None
 
 
 _entries: dict[str, _Entry] = {}
 
 
 def register_panel(
-    name: str, *, title: str | None = None, place: Rect | None = None
+    name: str, *, title: str | None = None, place: str | None = None
 ) -> Callable[[_F], _F]:
     """Make a panel known, so that every film shows it: a decorator of its class.
 
@@ -164,7 +168,7 @@ def register_panel(
     Args:
         name: What it is called in messages.
         title: What stands at the top of its card; by default its name in capitals.
-        place: Where in the frame it lies; by default in the next place that is free.
+        place: Its card in every ``Layout``; by default it has a place of its own below the others.
 
     Raises:
         ValueError: If the name is taken.
@@ -179,39 +183,44 @@ def register_panel(
     return keep
 
 
-def frame_size() -> tuple[int, int]:
-    """Return width and height (pixels) of a frame with all panels that are registered."""
-    return style.frame_size(sum(entry.place is None for entry in _entries.values()))
+def added_panels() -> int:
+    """Return how many panels are registered that have no place among the others."""
+    return sum(entry.place is None for entry in _entries.values())
 
 
 class Panels:
-    """All panels of one film."""
+    """All panels of one film.
 
-    def __init__(self, trajectory: Trajectory) -> None:
-        added = [name for name, entry in _entries.items() if entry.place is None]
-        places = dict(zip(added, style.places_below(len(added)), strict=True))
+    Args:
+        trajectory: The run.
+        layout: Where their cards lie.
+    """
+
+    def __init__(self, trajectory: Trajectory, layout: Layout) -> None:
+        places = (f"added {number}" for number in count())
         self._panels: list[tuple[str, Panel, Canvas]] = []
         for name, entry in _entries.items():
-            canvas = Canvas(entry.place or places[name], entry.title)
-            with _named(name):
+            place = entry.place or next(places)
+            canvas = Canvas(layout.cards[place], entry.title, layout.place(place))
+            with named(f"panel {name}"):
                 self._panels.append((name, entry.factory(trajectory, canvas), canvas))
 
     def changes(self, moment: Moment) -> list[DirtyRegion]:
         """Return what changed since the last moment."""
         regions = []
         for name, panel, canvas in self._panels:
-            with _named(name):
+            with named(f"panel {name}"):
                 panel.draw(moment)
             regions += canvas.take_changes()
         return regions
 
 
 @contextmanager
-def _named(name: str) -> Iterator[None]:
-    """Turn what a panel raises into one line that names it."""
+def named(what: str) -> Iterator[None]:
+    """Turn what a panel or a view raises into one line that names it."""
     try:
         yield
     except (UserError, MemoryError):
         raise
     except Exception as error:
-        raise UserError(f"panel {name}: {error_in_words(error)}") from error
+        raise UserError(f"{what}: {error_in_words(error)}") from error

@@ -18,7 +18,6 @@ from fuzzyq_bullet.video.explanation import aim_name, off_aim
 from fuzzyq_bullet.video.panels.base import Canvas, Panel, register_panel
 from fuzzyq_bullet.video.panels.fuzzification import Fuzzification
 from fuzzyq_bullet.video.panels.rules import Rules
-from fuzzyq_bullet.video.style import FUZZIFICATION, RULES
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
@@ -133,14 +132,14 @@ def clearances(trajectory: Trajectory, canvas: Canvas) -> Curve:
     return Curve(canvas, ticks.time[tick], near, Scale(0.0, _MOST_ROOM, marks), words)
 
 
-@register_panel("fuzzification", title="2  JUDGES", place=FUZZIFICATION)
+@register_panel("fuzzification", title="2  JUDGES", place="fuzzification")
 def second(trajectory: Trajectory, canvas: Canvas) -> Panel:
     """Return panel 2 for the planner of a run."""
     judges = has_rules(trajectory.decisions)
     return Fuzzification(trajectory, canvas) if judges else headings(trajectory, canvas)
 
 
-@register_panel("rules", title="3  RULES THAT FIRE", place=RULES)
+@register_panel("rules", title="3  RULES THAT FIRE", place="rules")
 def third(trajectory: Trajectory, canvas: Canvas) -> Panel:
     """Return panel 3 for the planner of a run."""
     ruled = has_rules(trajectory.decisions)

@@ -13,7 +13,6 @@ from fuzzyq_bullet.video.explanation import aim_name, is_clear
 from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for, corridor
 from fuzzyq_bullet.video.meshes import walls_of
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
-from fuzzyq_bullet.video.style import SENSORS
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Sensed, sensed_at, sensor_range
 
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ _LARGE = 50.0
 """An outline that reaches farther (m) is cut before it is drawn: Pillow has its limits."""
 
 
-@register_panel("sensors", title="1  SENSES", place=SENSORS)
+@register_panel("sensors", title="1  SENSES", place="sensors")
 class Sensors:
     """Panel 1 of one run."""
 

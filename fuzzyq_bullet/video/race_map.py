@@ -1,0 +1,133 @@
+"""The map of a race: who is where, and which way each has come."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.legend import note
+from fuzzyq_bullet.video.marks import cross
+from fuzzyq_bullet.video.paint import DirtyRegion
+from fuzzyq_bullet.video.plan import Plan
+from fuzzyq_bullet.video.timeline import Steady
+from fuzzyq_bullet.video.viewpoint import extent_of
+
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw
+
+    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.video.style import Rect
+    from fuzzyq_bullet.video.timeline import Moment
+
+COLOURS: tuple[style.Colour, ...] = (style.LEFT, (230, 159, 0), (222, 140, 184), (240, 228, 66))
+"""One for each run, which the colour-blind tell apart; its number says the same."""
+_WIDTH = 3.0
+"""Width of a way (points)."""
+_STEP = 1.5
+"""A way grows by no less (pixels)."""
+_LEAST_ROBOT = 9.0
+"""A robot is never drawn with a smaller radius (points): its number must be legible."""
+
+
+class RaceMap:
+    """The map of some runs of one field.
+
+    Args:
+        runs: The runs.
+        rect: Where it lies in the frame (pixels).
+        unit: Pixels a point.
+    """
+
+    def __init__(self, runs: Sequence[Trajectory], rect: Rect, unit: float) -> None:
+        self._runs, self._rect, self._unit = runs, rect, unit
+        areas = np.array([extent_of(run) for run in runs])
+        (x0, y0), (x1, y1) = areas[:, :2].min(axis=0).tolist(), areas[:, 2:].max(axis=0).tolist()
+        self._plan = Plan(runs[0].scenario, (x0, y0, x1, y1), rect, unit)
+        self._image = paint.card(rect, unit=unit)
+        note(self._image, self._plan.field, f"squares of {self._plan.step:g} m", unit)
+        self._plan.draw_on(self._image)
+        self._radius = [
+            max(_LEAST_ROBOT * unit, run.scenario.robot.radius * self._plan.scale) for run in runs
+        ]
+        self._steady = [Steady(self._plan.scale) for _ in runs]
+        self._ticks = [0] * len(runs)
+        self._boxes: list[paint.Box | None] = [None] * len(runs)
+        self._fresh = True
+
+    def draw(self, moments: Sequence[Moment]) -> list[DirtyRegion]:
+        """Return what changed since the last moments, one of each run."""
+        dirty: list[paint.Box] = [(0, 0, *self._rect.size)] if self._fresh else []
+        for number, moment in enumerate(moments):
+            if not self._steady[number].moved(moment) and not self._fresh:
+                continue
+            grown = self._grow(number, moment.tick)
+            margin = self._radius[number] + 3 * self._unit
+            spot = self._plan.spot([moment.position])
+            now = paint.box_around(spot, margin, self._rect.size)
+            hit = self._hit(number, moment)
+            if hit is not None:
+                around = paint.box_around(hit, 20 * self._unit, self._rect.size)
+                now = paint.joined([now, around])
+            box = paint.joined([now, self._boxes[number], grown])
+            self._boxes[number] = now
+            if box is not None and not self._fresh:
+                dirty.append(box)
+        self._fresh = False
+        return [self._composed(box, moments) for box in dirty]
+
+    def _composed(self, box: paint.Box, moments: Sequence[Moment]) -> DirtyRegion:
+        """Return a part of the map with all robots, the first on top."""
+        image = self._image.crop(box)
+        for number, moment in reversed(list(enumerate(moments))):
+            self._draw_robot(image, box, number, moment)
+        return DirtyRegion(self._rect.x + box[0], self._rect.y + box[1], image)
+
+    def _draw_robot(self, image: Image.Image, box: paint.Box, number: int, moment: Moment) -> None:
+        spot, radius, unit = self._plan.spot([moment.position])[0], self._radius[number], self._unit
+        around = paint.box_around([spot], radius + 3 * unit, self._rect.size)
+        if around is None:
+            return
+        if around[0] < box[2] and around[2] > box[0] and around[1] < box[3] and around[3] > box[1]:
+            for colour, reach in ((style.PAGE, radius + 1.5 * unit), (COLOURS[number], radius)):
+
+                def disc(pen: ImageDraw.ImageDraw, at: paint.Scaled, reach: float = reach) -> None:
+                    pen.ellipse(at.disc(spot, reach), fill=255)
+
+                paint.stamp(image, box, [spot], reach + 1, colour, disc)
+            size = max(round(radius * 1.3), 1)
+            at = (float(spot[0]) - box[0], float(spot[1]) + 0.36 * size - box[1])
+            paint.write(image, at, str(number + 1), style.PAGE, size, bold=True, align="m")
+        hit = self._hit(number, moment)
+        if hit is not None:
+            cross(image, box, hit[0], 8.0, unit)
+
+    def _hit(self, number: int, moment: Moment) -> Floats | None:
+        """Return where a run collided (pixels), shape (1, 2), when that is over."""
+        collision = self._runs[number].collision
+        return self._plan.spot([collision.point]) if moment.over and collision else None
+
+    def _grow(self, number: int, tick: int) -> paint.Box | None:
+        """Draw the way of a run up to a tick and return the box that changed."""
+        since, path = self._ticks[number], self._runs[number].ticks.position
+        if tick <= since:
+            return None
+        ends = self._plan.spot(path[[since, tick]])
+        if np.abs(ends[1] - ends[0]).max() < _STEP:
+            return None
+        points = self._plan.spot(path[since : tick + 1])
+        self._ticks[number] = tick
+        width = _WIDTH * self._unit
+        piece = paint.layer(
+            points,
+            width + 1,
+            self._rect.size,
+            lambda pen, at: paint.polyline(pen, at(points), 255, width * at.factor),
+        )
+        if piece is None:
+            return None
+        piece.lay(self._image, (0, 0, *self._rect.size), COLOURS[number])
+        return piece.box
