@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import imageio.v3 as iio
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
@@ -169,9 +170,9 @@ def write_still(
     Raises:
         UserError: If it cannot be made, or written.
     """
-    picture = Image.fromarray(frame(trajectory, time, size=size, view=view, names=names))
+    picture = frame(trajectory, time, size=size, view=view, names=names)
     with written_beside(path) as part:
-        picture.save(part, format="PNG", optimize=True)
+        iio.imwrite(part, picture, extension=".png")
 
 
 def moments(timeline: Timeline, speed: float, fps: int = FPS) -> Iterator[Moment]:
