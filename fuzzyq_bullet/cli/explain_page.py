@@ -208,7 +208,7 @@ def _sentences(controller: FuzzyController, inference: Inference, width: int) ->
     joint = " " if all(len(" ".join(pair)) <= room for pair in halves) else "\n   "
     grid = Table.grid(padding=(0, 1))
     for (strength, _), pair in zip(firing, halves, strict=True):
-        grid.add_row(Text(f"{strength:.2f}", style="bold cyan"), joint.join(pair))
+        grid.add_row(Text(f"{strength:.2f}", style="bold cyan"), Text(joint.join(pair)))
     silent = len(pairs) - len(firing)
     grid.add_row("", Text(f"The other {silent} rules stay below {FIRES}.", style="dim"))
     return grid

@@ -138,6 +138,13 @@ class FilmRequest:
 
         film = self.filming
         if self.still is not None:
+            end = max(
+                one.ticks.time[-1] for one in (runs if isinstance(runs, Sequence) else [runs])
+            )
+            if self.still > end + 0.005:  # as it is told
+                raise UserError(
+                    f"--still: {self.still:g} s is after the end of the run, {end:.2f} s"
+                )
             write_still(runs, path, self.still, size=film.size, view=film.view, names=names)
             return path
         with progress_bar("filming") as (progress, bar), _options_named():

@@ -24,7 +24,7 @@ from foxglove.messages import Log, LogLevel
 from fuzzyq_bullet.columns import Column, Columns
 from fuzzyq_bullet.export import scene
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.trajectory import DECISIONS, TICKS, Trajectory
+from fuzzyq_bullet.trajectory import TICKS, Trajectory
 from fuzzyq_bullet.video.captions import outcome_lines
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.explanation import reason
@@ -74,10 +74,11 @@ def _log_all(trajectory: Trajectory, context: Context) -> None:
     frame = FrameTransformsChannel("/tf", context=context)
     log = LogChannel("/log", context=context)
     states = Channel("/ticks", schema=json_schema("fuzzyq_bullet.Tick", TICKS), context=context)
+    columns = trajectory.decision_columns
     decided = Channel(
-        "/decisions", schema=json_schema("fuzzyq_bullet.Decision", DECISIONS), context=context
+        "/decisions", schema=json_schema("fuzzyq_bullet.Decision", columns), context=context
     )
-    state_rows, decision_rows = _rows(TICKS, vars(ticks)), _rows(DECISIONS, vars(decisions))
+    state_rows, decision_rows = _rows(TICKS, vars(ticks)), _rows(columns, vars(decisions))
     events = _events(trajectory)
     at = decisions.tick.tolist()
     index = 0

@@ -37,7 +37,8 @@ NAMES = {"distance": "d", "difference": "Df", "turn": "turn", "step": "step"}
 
 _Number: TypeAlias = Annotated[Number, Field(ge=-LARGEST, le=LARGEST)]
 Samples: TypeAlias = Annotated[Count, Field(ge=LEAST_SAMPLES, le=MOST_SAMPLES)]
-_Words: TypeAlias = Annotated[str, Field(max_length=40, pattern=r"^[^\x00-\x1f\x7f]*$")]
+_PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$"
+_Words: TypeAlias = Annotated[str, Field(max_length=40, pattern=_PRINTABLE)]
 
 
 def _is_label(text: str) -> str:

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
+LEAST = 1e-6
+"""Least width and slope: below it numbers lose their digits."""
 
 
 class _Function(ABC):
@@ -42,17 +44,17 @@ class Gaussian(_Function):
 
     Attributes:
         center: c.
-        width: σ, positive.
+        width: σ, at least ``LEAST``.
 
     Raises:
-        ValueError: If the width is not positive.
+        ValueError: If the width is too small.
     """
 
     center: float
     width: float
 
     def __post_init__(self) -> None:
-        _check(self.width > 0.0, f"the width must be more than 0, got {self.width:g}")
+        _check(self.width >= LEAST, f"the width must be at least {LEAST:g}, got {self.width:g}")
 
     def degree(self, x: float) -> float:
         """Return the membership of one number."""
@@ -135,8 +137,8 @@ class Bell(_Function):
     slope: float
 
     def __post_init__(self) -> None:
-        _check(self.half_width > 0.0, f"the half width must be more than 0, got {self.half_width}")
-        _check(self.slope > 0.0, f"the slope must be more than 0, got {self.slope}")
+        for name, number in (("half width", self.half_width), ("slope", self.slope)):
+            _check(number >= LEAST, f"the {name} must be at least {LEAST:g}, got {number:g}")
 
     def degree(self, x: float) -> float:
         """Return the membership of one number."""

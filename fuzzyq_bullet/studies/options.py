@@ -146,12 +146,14 @@ def with_rules(settings: PlannerSettings, rules: str | None) -> PlannerSettings:
     if rules is None or "rules" not in type(settings).model_fields:
         return settings
     try:
-        found = json.loads(rules) if rules.startswith("{") else rules_named(rules)
+        found = json.loads(rules) if rules.startswith('{"') else rules_named(rules)
         given = type(settings).model_validate({**settings.model_dump(), "rules": found})
         if isinstance(given, FuzzyQLambdaSettings):
             rule_policy(given)
     except UserError as error:
         raise UserError(f"--rules: {error.problems[0]}", *error.problems[1:]) from error
+    except ValueError as error:  # JSON that is none, or not of a controller
+        raise UserError(f"--rules: {shorten(rules)}: is no file of rules") from error
     return given
 
 

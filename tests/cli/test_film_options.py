@@ -72,9 +72,11 @@ def test_a_replay_is_named_by_how_it_is_filmed_and_leaves_the_usual_film(
 
 
 def test_the_example_of_a_view_is_filmed(inside: Call, filmed: Path, tmp_path: Path) -> None:
-    words = ("--plugin", EXAMPLE, "--view", "countdown", "--still", "99", "--out", tmp_path)
+    words = ("--plugin", EXAMPLE, "--view", "countdown", "--still", "1.95", "--out", tmp_path)
     inside("replay", filmed / "short.npz", *words)
-    with Image.open(tmp_path / "short-countdown-at99s.png") as image:
+    with pytest.raises(UserError, match=r"--still: 99 s is after the end of the run, 1\.95 s"):
+        inside("replay", filmed / "short.npz", "--still", 99, "--out", tmp_path)
+    with Image.open(tmp_path / "short-countdown-at1.95s.png") as image:
         bar = image.convert("RGB").crop((128, 490, 1152, 520))
         green = sum(1 for pixel in bar.get_flattened_data() if pixel == (20, 184, 138))
     assert green > 0.6 * 1024 * 24, "the robot is in the goal"

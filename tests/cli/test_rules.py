@@ -12,10 +12,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from fuzzyq_bullet import Trajectory, load_scenario, with_options
+from fuzzyq_bullet import Trajectory, frame, load_scenario, with_options
 from fuzzyq_bullet import episode as episodes
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.fuzzy import load_controller, paper_definition, save_controller
+from fuzzyq_bullet.fuzzy import (
+    ControllerDefinition,
+    load_controller,
+    paper_definition,
+    save_controller,
+)
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.scenario.files import dump_scenario, parse_scenario
@@ -46,6 +51,7 @@ def field(tmp_path: Path) -> Callable[..., Path]:
     """Write a scenario beside two files of rules."""
     (tmp_path / "three.yaml").write_text(THREE)
     (tmp_path / "smooth.yaml").write_text(SMOOTH)
+    (tmp_path / "named.yaml").write_text(THREE.replace("near:", "closeby:"))
 
     def write(rules: str = "three.yaml", planner: str = "improved-fuzzy") -> Path:
         (tmp_path / "mine.yaml").write_text(FIELD.format(rules=rules, planner=planner))
@@ -158,6 +164,34 @@ def test_a_record_of_an_unknown_planner_keeps_its_table(
     assert "rules_1_3" in back.csv("decisions").splitlines()[0].split(",")
 
 
+def test_mcap_names_the_labels_of_the_rules_that_were_asked(field: Callable[..., Path]) -> None:
+    pytest.importorskip("foxglove", reason="the extra mcap is not installed")
+    from fuzzyq_bullet.export.mcap import mcap_of
+
+    assert mcap_of(drive(field()))  # a table that is not 5 by 5
+    assert b"closeby" in mcap_of(drive(field("named.yaml")))
+
+
+def test_the_film_shows_the_freer_side_on_its_side_in_whatever_order_the_sets_stand(
+    field: Callable[..., Path], tmp_path: Path
+) -> None:
+    told = load_controller(field().with_name("three.yaml")).model_dump(mode="json")
+    side = told["inputs"]["difference"]["sets"]
+    told["inputs"]["difference"]["sets"] = dict(reversed(side.items()))
+    told["rules"] = {label: row[::-1] for label, row in told["rules"].items()}
+    save_controller(ControllerDefinition.model_validate(told), tmp_path / "turned.yaml")
+    run, turned = drive(field()), drive(field("turned.yaml"))
+    middle = float(run.ticks.time[-1]) / 2
+    table = np.s_[498:710, 616:890]  # panel 3
+    assert np.array_equal(frame(run, middle)[table], frame(turned, middle)[table])
+
+
+def test_words_are_words_and_no_markup(field: Callable[..., Path], inside: Call) -> None:
+    path = field().with_name("three.yaml")
+    path.write_text(THREE.replace("words: right freer", 'words: "[/red]"'))
+    assert "[/red]" in inside("explain", 1.2, -0.8, "--rules", path).stdout
+
+
 # Mistakes
 
 
@@ -256,6 +290,9 @@ def test_a_bench_compares_planners_with_ones_own_rules(
     planners = json.loads((out / "settings.json").read_text())["planners"]
     assert planners["fuzzy"]["rules"]["name"] == "three by three"
     assert "rules" not in planners["q-learning"]
+    for wrong in ("{}", "{x.yaml", '{"a": 1}'):
+        with pytest.raises(UserError, match="--rules: "):
+            inside("bench", "success", "--planners", "fuzzy", "--rules", wrong, "--out", out)
     with pytest.raises(UserError, match="--rules: the shipped policy"):
         inside("bench", "success", "--planners", "fuzzy-q-lambda", "--rules", path, "--out", out)
 

@@ -173,6 +173,16 @@ def test_a_toolbox_file_is_read_by_the_names_of_its_variables(tmp_path: Path) ->
     assert mine.controller().infer(1.0, 4.0).turn > 0.5
 
 
+def test_the_numbers_of_the_sets_count_and_not_their_lines(tmp_path: Path) -> None:
+    first, second = "MF1='N':'gbellmf',[2 3 0]", "MF2='F':'gaussmf',[1.5 5]"
+    turned = TOOLBOX.replace(f"{first}\n{second}", f"{second}\n{first}")
+    assert turned != TOOLBOX
+    for name, text in (("a.fis", TOOLBOX), ("b.fis", turned)):
+        (tmp_path / name).write_text(text)
+    a, b = (load_controller(tmp_path / name) for name in ("a.fis", "b.fis"))
+    assert outputs(a) == outputs(b)
+
+
 # Mistakes
 
 
@@ -204,7 +214,7 @@ def refusal(text: str, tmp_path: Path, name: str = "mine.yaml") -> str:
         ("triangular: [1, 2.5, 4]", "triangel: [1, 2.5, 4]",
          "mine.yaml:7: inputs.distance.sets.middle.triangel: unknown key; did you mean 'tri"),
         ("triangular: [1, 2.5, 4]", "gaussian: [1, 0]",
-         "inputs.distance.sets.middle.gaussian: the width must be more than 0, got 0"),
+         "inputs.distance.sets.middle.gaussian: the width must be at least 1e-06, got 0"),
         ("triangular: [1, 2.5, 4]", "gaussian: [.nan, 1]",
          "mine.yaml:7: inputs.distance.sets.middle.gaussian[0]: must be finite, got nan"),
         ("{triangular: [1, 2.5, 4]}", "{}",
@@ -256,6 +266,8 @@ def test_all_mistakes_are_told_at_once_in_the_order_of_the_lines(tmp_path: Path)
         ("mine.fis", TOOLBOX.replace("trimf',[0 1", "sigmf',[0 1"), "no kind of set 'sigmf'"),
         ("mine.fis", TOOLBOX.replace("[0 1 2]", "[0 1]"), "MF1: trimf needs 3 numbers, got 2"),
         ("mine.fis", TOOLBOX.replace("[0 1 2]", "[0 x 2]"), "expected a number, got 'x'"),
+        ("mine.fis", TOOLBOX.replace("2 2, 1 1 (1) : 1", "2 2, 1 1 (.) : 1"), "expected a rule"),
+        ("mine.fis", TOOLBOX.replace("MF2='F'", "MF1='F'"), "MF1' is there already"),
         ("mine.fis", "Name=1", "expected a section such as [System]"),
         ("mine.fll", "x", "expected KEY: VALUE"),
         ("mine.fll", "Engine: e\n", "needs one RuleBlock, got 0"),
@@ -283,6 +295,9 @@ def test_a_wrong_file_gets_one_line(name: str, text: str, complaint: str, tmp_pa
         ("near and difference is b", "near and difference is a", "there is one for near and a"),
         ("Gaussian 0.0 1.5", "Sigmoid 0.0 1.5", "no kind of set 'Sigmoid'"),
         ("InputVariable: difference", "InputVariable: distance", "needs two inputs"),
+        ("InputVariable: difference", "InputVariable: step", "step is an input and an output"),
+        ("activation: General", "activation: First", "activation: must be General"),
+        ("default: nan", "default: 1.5", "default: must be nan"),
     ],
 )
 def test_a_wrong_engine_gets_one_line(old: str, new: str, complaint: str, tmp_path: Path) -> None:

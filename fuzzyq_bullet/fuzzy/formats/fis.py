@@ -40,7 +40,10 @@ _TERMS: Shapes = {
 _AND = {"prod": "product", "min": "minimum"}
 _SECTION = re.compile(r"\[(\w+)\]")
 _MF = re.compile(r"'(?P<label>[^']*)'\s*:\s*'(?P<kind>[^']*)'\s*,\s*\[(?P<numbers>[^\]]*)\]")
-_RULE = re.compile(r"(-?\d+)\s+(-?\d+)\s*,\s*(-?\d+)\s+(-?\d+)\s*\(([\d.]+)\)\s*:\s*(\d+)")
+_RULE = re.compile(
+    r"(-?[0-9]{1,4})\s+(-?[0-9]{1,4})\s*,\s*(-?[0-9]{1,4})\s+(-?[0-9]{1,4})\s*"
+    r"\(([0-9]{1,9}(?:\.[0-9]*)?)\)\s*:\s*([0-9]{1,4})"
+)
 
 
 class _Section:
@@ -109,6 +112,8 @@ def _sections(text: str, where: str) -> dict[str, _Section]:
         if here is None:
             raise UserError(f"{where}:{number}: expected a section such as [System]")
         key, equals, rest = line.partition("=")
+        if equals and key.strip() in here.entries:
+            raise UserError(f"{where}:{number}: {shorten(key.strip())} is there already")
         if equals:
             here.entries[key.strip()] = (rest.strip(), number)
         else:
@@ -119,9 +124,10 @@ def _sections(text: str, where: str) -> dict[str, _Section]:
 def _variable(section: _Section, where: str) -> Node:
     text, line = section.of("Range", where)
     sets: dict[str, Node] = {}
-    for key, (entry, at) in section.entries.items():
-        if not re.fullmatch(r"MF\d+", key):
-            continue
+    numbered = {int(key[2:]): key for key in section.entries if re.fullmatch(r"MF[0-9]{1,4}", key)}
+    for number in sorted(numbered):
+        key = numbered[number]
+        entry, at = section.entries[key]
         here = f"{where}:{at}: {key}"
         match = _MF.fullmatch(entry)
         if match is None:

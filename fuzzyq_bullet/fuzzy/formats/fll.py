@@ -44,7 +44,7 @@ _AND = {"AlgebraicProduct": "product", "Minimum": "minimum"}
 _BLOCKS = ("Engine", "InputVariable", "OutputVariable", "RuleBlock")
 _RULE = re.compile(
     r"if\s+(\w+)\s+is\s+(\w+)\s+and\s+(\w+)\s+is\s+(\w+)\s+"
-    r"then\s+(\w+)\s+is\s+(\w+)\s+and\s+(\w+)\s+is\s+(\w+)\s*(?:with\s+([\d.]+))?"
+    r"then\s+(\w+)\s+is\s+(\w+)\s+and\s+(\w+)\s+is\s+(\w+)\s*(?:with\s+([0-9]{1,9}(?:\.[0-9]*)?))?"
 )
 
 
@@ -75,6 +75,10 @@ def read(text: str, where: str) -> Node:
     rules = [one for kind, one in blocks if kind == "RuleBlock"]
     if len(rules) != 1:
         raise UserError(f"{where}: needs one RuleBlock, got {len(rules)}")
+    for name in inputs:
+        if name in outputs:
+            raise UserError(f"{where}:{outputs[name].line}: {name} is an input and an output")
+    _refuse_other(blocks, where)
     names = named(inputs, INPUTS, "inputs", where) | named(outputs, OUTPUTS, "outputs", where)
     groups = {
         group: mapping(1, {names[one.name]: _variable(one, where) for one in blocks_.values()})
@@ -93,6 +97,29 @@ def read(text: str, where: str) -> Node:
             "inference": _inference(rules[0], list(outputs.values()), where),
         },
     )
+
+
+_ONLY = {
+    "enabled": ("true",),
+    "activation": ("General", "none"),
+    "default": ("nan",),
+    "lock-previous": ("false",),
+}
+"""What means something else if it says anything else."""
+
+
+def _refuse_other(blocks: list[tuple[str, _Block]], where: str) -> None:
+    """Refuse what would be left out of the controller.
+
+    Raises:
+        UserError: If something is.
+    """
+    for _, block in blocks:
+        for key, text, line in block.entries:
+            if key in _ONLY and text not in _ONLY[key]:
+                raise UserError(
+                    f"{where}:{line}: {key}: must be {_ONLY[key][0]}, got {shorten(text)}"
+                )
 
 
 def _blocks(text: str, where: str) -> list[tuple[str, _Block]]:
@@ -184,7 +211,10 @@ def _inference(block: _Block, outputs: list[_Block], where: str) -> Node:
         told["defuzzification"] = value(number, "centroid" if kind == "Centroid" else "average")
         if kind == "Centroid":
             given = numbers(points, here)
-            told["samples"] = value(number, int(given[0]) if given else 101)
+            samples = int(given[0]) if given else 101
+            if "samples" in told and told["samples"].data != samples:
+                raise UserError(f"{here}: both outputs need the same number of points")
+            told["samples"] = value(number, samples)
             aggregation, _ = one.first("aggregation", where)
             if aggregation != "Maximum":
                 raise UserError(f"{here}: aggregation {shorten(aggregation)}; it must be Maximum")
