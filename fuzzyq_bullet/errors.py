@@ -16,6 +16,11 @@ class UserError(Exception):
         super().__init__("\n".join(problems))
         self.problems: tuple[str, ...] = problems
 
+    def under(self, place: str) -> UserError:
+        """Return the same mistakes under the option or key that led to them."""
+        first, *others = self.problems
+        return UserError(f"{place}: {first}", *others)
+
 
 class PlannerError(UserError):
     """A planner raised, exited, or decided nonsense; says which one, what, when and where."""

@@ -28,7 +28,7 @@ def rules_given(text: str | None) -> ControllerDefinition:
     try:
         rules = rules_named(text)
     except UserError as error:
-        raise UserError(f"--rules: {error.problems[0]}", *error.problems[1:]) from error
+        raise error.under("--rules") from error
     if isinstance(rules, ControllerDefinition):
         return rules
     if rules == NO_CONTROLLER:

@@ -85,13 +85,18 @@ class SetDefinition(Model):
             raise _errors([((shapes[0],), str(error))]) from error
         return self
 
-    def fuzzy_set(self, label: str) -> FuzzySet:
-        """Return the set under a label."""
+    @property
+    def shape(self) -> tuple[str, tuple[float, ...]]:
+        """Name of its shape, and the numbers of that."""
         [(name, numbers)] = [
             (name, value) for name in SHAPES if (value := getattr(self, name)) is not None
         ]
-        function = SHAPES[name](*(numbers if isinstance(numbers, tuple) else (numbers,)))
-        return FuzzySet(label, function, self.words, self.meaning)
+        return name, numbers if isinstance(numbers, tuple) else (numbers,)
+
+    def fuzzy_set(self, label: str) -> FuzzySet:
+        """Return the set under a label."""
+        name, numbers = self.shape
+        return FuzzySet(label, SHAPES[name](*numbers), self.words, self.meaning)
 
     @model_serializer
     def _told(self) -> dict[str, Any]:

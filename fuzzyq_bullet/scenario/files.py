@@ -148,8 +148,7 @@ def _with_rules_in(tree: Node, folder: Path, where: str) -> dict[str, Any]:
         rules = rules_named(planner["rules"], folder)
     except UserError as error:
         inner = tree.children["planner"]
-        line = f"{where}:{inner.line_of('rules')}: planner.rules: "
-        raise UserError(line + error.problems[0], *error.problems[1:]) from error
+        raise error.under(f"{where}:{inner.line_of('rules')}: planner.rules") from error
     return {**data, "planner": {**planner, "rules": rules}}
 
 

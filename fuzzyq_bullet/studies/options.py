@@ -151,7 +151,7 @@ def with_rules(settings: PlannerSettings, rules: str | None) -> PlannerSettings:
         if isinstance(given, FuzzyQLambdaSettings):
             rule_policy(given)
     except UserError as error:
-        raise UserError(f"--rules: {error.problems[0]}", *error.problems[1:]) from error
+        raise error.under("--rules") from error
     except ValueError as error:  # JSON that is none, or not of a controller
         raise UserError(f"--rules: {shorten(rules)}: is no file of rules") from error
     return given

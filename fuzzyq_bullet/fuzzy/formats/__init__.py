@@ -72,19 +72,7 @@ def load_controller(path: Path | str) -> ControllerDefinition:
     path = Path(path)
     read = format_of(path).read
     text = read_text(path, what="a controller", most=MAX_BYTES)
-    return controller_in(read(text, str(path)), str(path))
-
-
-def controller_in(tree: Node, where: str) -> ControllerDefinition:
-    """Return the controller that plain data describes.
-
-    Args:
-        tree: The data with line numbers.
-        where: What to call them in messages.
-
-    Raises:
-        UserError: If it is wrong.
-    """
+    where, tree = str(path), read(text, str(path))
     if not isinstance(tree.data, dict):
         raise UserError(
             f"{where}:{tree.line}: expected a mapping with the keys inputs, outputs and rules, "
@@ -93,11 +81,11 @@ def controller_in(tree: Node, where: str) -> ControllerDefinition:
     try:
         return ControllerDefinition.model_validate(tree.data)
     except ValidationError as error:
-        raise UserError(*lines_of(problems_in(error), 0, tree, where)) from error
+        raise UserError(*lines_of(_problems_in(error), 0, tree, where)) from error
 
 
-def problems_in(error: ValidationError) -> list[Problem]:
-    """Return what is wrong with a controller, each mistake once."""
+def _problems_in(error: ValidationError) -> list[Problem]:
+    """Return each mistake once."""
     found: dict[tuple[str | int, ...], Problem] = {}
     for item in error.errors(include_url=False):
         loc = tuple(part for part in item["loc"] if part != "[key]")

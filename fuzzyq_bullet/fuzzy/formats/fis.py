@@ -18,11 +18,12 @@ from fuzzyq_bullet.fuzzy.formats.lines import (
     mapping,
     named,
     numbers,
+    ordered,
     table,
     term,
+    terms,
     value,
 )
-from fuzzyq_bullet.fuzzy.memberships import SHAPES
 from fuzzyq_bullet.wording import not_one_of, shorten
 from fuzzyq_bullet.yaml_tree import Node
 
@@ -83,7 +84,7 @@ def read(text: str, where: str) -> Node:
         by_name = {one.of("Name", where, f"{prefix}{i}")[0]: one for i, one in enumerate(found)}
         names = named(by_name, wanted, group, where)
         held = {names[name]: _variable(one, where) for name, one in by_name.items()}
-        groups[group] = mapping(1, {name: held[name] for name in wanted})
+        groups[group] = ordered(held, wanted)
         orders.append([names[name] for name in by_name])
     return mapping(
         1,
@@ -230,15 +231,10 @@ def write(definition: ControllerDefinition) -> str:
 
 def _written(variable: VariableDefinition, *, centers: bool) -> list[str]:
     """Return the sets; for an average only their centers count."""
-    theirs = {name: (kind, order) for kind, (name, order) in _TERMS.items()}
     lines = [f"NumMFs={len(variable.sets)}"]
-    for number, (label, one) in enumerate(variable.sets.items(), start=1):
-        function = one.fuzzy_set(label).function
-        name = "singleton" if centers else next(k for k, c in SHAPES.items() if c is type(function))
-        ours = (function.center,) if centers else function.parameters
-        kind, order = theirs[name]
-        given = [ours[order.index(place)] for place in range(len(order))]
-        lines.append(f"MF{number}='{label}':'{kind}',[{' '.join(map(repr, given))}]")
+    told = terms(variable, _TERMS, centers=centers)
+    for number, (label, kind, given) in enumerate(told, start=1):
+        lines.append(f"MF{number}='{label}':'{kind}',[{given}]")
     return lines
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.fuzzy.formats.lines import (
@@ -20,11 +20,12 @@ from fuzzyq_bullet.fuzzy.formats.lines import (
     mapping,
     named,
     numbers,
+    ordered,
     table,
     term,
+    terms,
     value,
 )
-from fuzzyq_bullet.fuzzy.memberships import SHAPES
 from fuzzyq_bullet.wording import not_one_of, shorten
 from fuzzyq_bullet.yaml_tree import Node
 
@@ -39,7 +40,6 @@ _TERMS: Shapes = {
     "Constant": ("singleton", (0,)),
 }
 """FuzzyLite's names of the shapes, and the order of their numbers, which is ours."""
-_OURS = {name: theirs for theirs, (name, _) in _TERMS.items()}
 _AND = {"AlgebraicProduct": "product", "Minimum": "minimum"}
 _BLOCKS = ("Engine", "InputVariable", "OutputVariable", "RuleBlock")
 _RULE = re.compile(
@@ -81,12 +81,9 @@ def read(text: str, where: str) -> Node:
     _refuse_other(blocks, where)
     names = named(inputs, INPUTS, "inputs", where) | named(outputs, OUTPUTS, "outputs", where)
     groups = {
-        group: mapping(1, {names[one.name]: _variable(one, where) for one in blocks_.values()})
-        for group, blocks_ in (("inputs", inputs), ("outputs", outputs))
+        group: ordered({names[name]: _variable(one, where) for name, one in held.items()}, order)
+        for group, held, order in (("inputs", inputs, INPUTS), ("outputs", outputs, OUTPUTS))
     }
-    for group, order in (("inputs", INPUTS), ("outputs", OUTPUTS)):
-        held = groups[group].children
-        groups[group] = mapping(1, {name: held[name] for name in order})
     title = next((one.name for kind, one in blocks if kind == "Engine"), "")
     return mapping(
         1,
@@ -237,8 +234,8 @@ def write(definition: ControllerDefinition) -> str:
     for name, variable in definition.outputs.named():
         lines += [f"OutputVariable: {name}", *_range(variable), "  lock-range: true"]
         lines += [f"  aggregation: {'none' if average else 'Maximum'}"]
-        how_ = "WeightedAverage TakagiSugeno" if average else f"Centroid {how.samples}"
-        lines += [f"  defuzzifier: {how_}", "  default: nan", "  lock-previous: false"]
+        defuzzifier = "WeightedAverage TakagiSugeno" if average else f"Centroid {how.samples}"
+        lines += [f"  defuzzifier: {defuzzifier}", "  default: nan", "  lock-previous: false"]
         lines += _written(variable, centers=average)
     lines += ["RuleBlock:", "  enabled: true", f"  conjunction: {norm}", "  disjunction: none"]
     lines += [f"  implication: {'none' if average else norm}", "  activation: General"]
@@ -259,10 +256,5 @@ def _range(variable: VariableDefinition) -> list[str]:
 
 def _written(variable: VariableDefinition, *, centers: bool) -> list[str]:
     """Return the terms; for an average only their centers count."""
-    lines = []
-    for label, one in variable.sets.items():
-        function = one.fuzzy_set(label).function
-        kind = "singleton" if centers else next(k for k, c in SHAPES.items() if c is type(function))
-        parameters: Any = (function.center,) if centers else function.parameters
-        lines.append(f"  term: {label} {_OURS[kind]} {' '.join(map(repr, parameters))}")
-    return lines
+    told = terms(variable, _TERMS, centers=centers)
+    return [f"  term: {label} {kind} {given}" for label, kind, given in told]

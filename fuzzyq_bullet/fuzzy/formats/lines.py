@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import Any, TypeAlias
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.fuzzy.definition import NAMES
 from fuzzyq_bullet.wording import not_one_of, shorten
 from fuzzyq_bullet.yaml_tree import Node
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.fuzzy.definition import VariableDefinition
 
 Shapes: TypeAlias = dict[str, tuple[str, tuple[int, ...]]]
 """For each kind of set the name of ours, and for each of our numbers the place of theirs."""
@@ -105,6 +108,29 @@ def table(cells: Cells, rows: list[str], columns: list[str], line: int, where: s
         found = [cells[row, column] for column in columns]
         told[row] = listing(found[0][1], [value(at, cell) for cell, at in found])
     return mapping(line, told)
+
+
+def terms(
+    variable: VariableDefinition, shapes: Shapes, *, centers: bool
+) -> Iterator[tuple[str, str, str]]:
+    """Yield label, kind and numbers of each set as a file writes them.
+
+    Args:
+        variable: Whose sets.
+        shapes: The kinds that the file may name.
+        centers: Whether only their centers count, as in an average.
+    """
+    theirs = {name: (kind, order) for kind, (name, order) in shapes.items()}
+    for label, one in variable.sets.items():
+        name, numbers = ("singleton", (one.fuzzy_set(label).center,)) if centers else one.shape
+        kind, order = theirs[name]
+        given = (numbers[order.index(place)] for place in range(len(order)))
+        yield label, kind, " ".join(map(repr, given))
+
+
+def ordered(held: Mapping[str, Node], names: Sequence[str]) -> Node:
+    """Return the variables of a controller in its own order, whatever that of the file was."""
+    return mapping(1, {name: held[name] for name in names})
 
 
 def term(kind: str, parameters: list[float], shapes: Shapes, where: str) -> dict[str, Any]:
