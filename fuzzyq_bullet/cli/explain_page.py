@@ -81,7 +81,6 @@ def as_page(
         known: Whether the weights in force are known, and told elsewhere.
     """
     base = controller.base
-    paper = rules.startswith("Table 4")
     near = _memberships(f"d = {distance:g} S_p free ahead", base.row, inference.near)
     side = _memberships(
         f"Df = {difference:g} S_p: {_roomier(difference)}", base.column, inference.side
@@ -93,7 +92,7 @@ def as_page(
         inputs.add_row(near)
         inputs.add_row(side)
     return Group(
-        title_line("Inputs, and how far they belong to each set" + (" (Table 2)" if paper else "")),
+        title_line("Inputs, and how far they belong to each set"),
         inputs,
         Text(),
         title_line(f"Rules ({rules}): [turn step] and strength, ◀ the strongest"),

@@ -39,7 +39,7 @@ def page(
     """Write an interactive page NAME.html: the run plays, and the controller can be changed.
 
     The page is one file. It needs no network and works on phones and projectors. Two records
-    give NAME-and-OTHER.html; --lesson gives lesson.html, with --rules of your own controller.
+    give NAME-and-OTHER.html; --lesson gives lesson.html, and with --rules my.yaml lesson-my.html.
 
     Raises:
         UserError: If there is nothing to show or too much, a record cannot be read, or the page
@@ -62,7 +62,8 @@ def page(
 
     trajectories = [Trajectory.load(path) for path in given]
     folder = out or (given[0].parent if given else Path("out"))
-    name = "-and-".join(path.stem for path in given) or "lesson"
+    own = "" if rules is None else f"-{Path(rules).stem}"
+    name = "-and-".join(path.stem for path in given) or f"lesson{own}"
     (path,) = writable_files(folder, [f"{name}.html"])
     read = [*given, *([] if rules is None else [Path(rules)])]
     refuse_inputs([path], [*read, *plugin_inputs(plugin or [])])

@@ -22,6 +22,7 @@ from fuzzyq_bullet.cli.film import (
 from fuzzyq_bullet.cli.options import FOLDER, Json, PluginOption, ReplaceOption, say
 from fuzzyq_bullet.cli.run import asked_for, driven, summarise
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.wording import shorten
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
@@ -74,11 +75,12 @@ def race(
     records = [Path(one) for one in what if one.lower().endswith(".npz")]
     if records and len(records) == len(what):
         if (planners, seed, drive) != (None, None, None):
-            raise UserError("race: records are raced as they are; leave out --planners and others")
+            raise UserError("race: records race as they are; leave out --planners, --seed, --drive")
         runs = _of_records(film, records, out, plugin or [], replace=replace)
     else:
         if len(what) > 1:
-            raise UserError(f"race: one scenario, or {LEAST} to {MOST} records (.npz); got {what}")
+            got = ", ".join(what)
+            raise UserError(f"race: one scenario, or {LEAST} to {MOST} records (.npz); got {got}")
         names = _planners(planners)
         folder = out or Path("out")
         runs = _of_scenario(
@@ -97,7 +99,7 @@ def _planners(text: str | None) -> list[str]:
     if not LEAST <= len(names) <= MOST or len(set(names)) < len(names):
         raise UserError(
             f"--planners: must be {LEAST} to {MOST} different planners, "
-            f"such as fuzzy,fuzzy-q-lambda; got {text!r}"
+            f"such as fuzzy,fuzzy-q-lambda; got {shorten(text)}"
         )
     return names
 

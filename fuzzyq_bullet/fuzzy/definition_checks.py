@@ -50,10 +50,13 @@ def mistakes_in(definition: ControllerDefinition) -> Mistakes:
     """Return what does not fit together."""
     found: Mistakes = []
     average = definition.inference.defuzzification == "average"
+    samples = GRID if average else definition.inference.samples
     for group, variables in (("inputs", definition.inputs), ("outputs", definition.outputs)):
         for name, variable in variables.named():
             for label, one in variable.sets.items():
-                why = _useless(one, variable, singletons=group == "outputs" and average)
+                output = group == "outputs"
+                points = samples if output else GRID
+                why = _useless(one, variable, points, singletons=output and average)
                 if why:
                     found.append(((group, name, "sets", label), why))
     if definition.outputs.step.range[0] < 0.0:
@@ -65,8 +68,17 @@ def mistakes_in(definition: ControllerDefinition) -> Mistakes:
     return found + _wrong_rules(definition)
 
 
-def _useless(one: SetDefinition, variable: VariableDefinition, *, singletons: bool) -> str:
-    """Say why nothing can belong to a set, if nothing can."""
+def _useless(
+    one: SetDefinition, variable: VariableDefinition, points: int, *, singletons: bool
+) -> str:
+    """Say why nothing can belong to a set, if nothing can.
+
+    Args:
+        one: The set.
+        variable: Whose it is.
+        points: How many points of the range are looked at: for an output, those of the centroid.
+        singletons: Whether it may be a single number.
+    """
     low, high = variable.range
     if one.singleton is not None:
         if not singletons:
@@ -75,8 +87,10 @@ def _useless(one: SetDefinition, variable: VariableDefinition, *, singletons: bo
                 "inference: {defuzzification: average}"
             )
         return "" if low <= one.singleton <= high else "lies outside the range"
-    most = one.fuzzy_set("").function.degrees(np.linspace(low, high, GRID)).max()
-    return "" if most >= NOTHING else "nothing in the range belongs to it"
+    most = one.fuzzy_set("").function.degrees(np.linspace(low, high, points)).max()
+    if most >= NOTHING:
+        return ""
+    return f"none of {points} points of the range belongs to it: too narrow, or outside"
 
 
 def _wrong_rules(definition: ControllerDefinition) -> Mistakes:

@@ -35,6 +35,9 @@ def test_two_records_and_a_lesson_have_names_of_their_own(
     assert inside("page", record, other, "--out", "new", cwd=tmp_path).returncode == 0
     assert (tmp_path / "new" / "drive-and-other.html").exists()
     assert inside("page", "--lesson", cwd=tmp_path).stdout == "out/lesson.html\n"
+    inside("explain", "--export", "mine.fll", cwd=tmp_path)
+    own = inside("page", "--lesson", "--rules", "mine.fll", cwd=tmp_path)
+    assert own.stdout == "out/lesson-mine.html\n"
 
 
 def test_somebody_elses_page_is_kept(record: Path, inside: Call, tmp_path: Path) -> None:

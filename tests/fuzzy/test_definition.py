@@ -210,7 +210,7 @@ def refusal(text: str, tmp_path: Path, name: str = "mine.yaml") -> str:
         ("triangular: [1, 2.5, 4]", "triangular: [4, 2.5, 1]",
          "mine.yaml:7: inputs.distance.sets.middle.triangular: the numbers must rise, got [4, 2.5"),
         ("triangular: [1, 2.5, 4]", "triangular: [6, 7, 8]",
-         "mine.yaml:7: inputs.distance.sets.middle: nothing in the range belongs to it"),
+         "mine.yaml:7: inputs.distance.sets.middle: none of 1001 points of the range"),
         ("triangular: [1, 2.5, 4]", "triangel: [1, 2.5, 4]",
          "mine.yaml:7: inputs.distance.sets.middle.triangel: unknown key; did you mean 'tri"),
         ("triangular: [1, 2.5, 4]", "gaussian: [1, 0]",
@@ -242,6 +242,14 @@ def test_a_mistake_is_told_with_file_line_and_key(
     assert old in THREE
     told = refusal(THREE.replace(old, new), tmp_path)
     assert any(one.startswith(line) or line in one for one in told.splitlines()), told
+
+
+def test_a_set_that_no_sample_of_the_centroid_meets_is_refused(tmp_path: Path) -> None:
+    narrow = SMOOTH.replace("trapezoidal: [0, 0, 0.4, 0.9]", "triangular: [0.201, 0.204, 0.207]")
+    told = refusal(narrow, tmp_path)
+    assert "outputs.step.sets.short: none of 101 points of the range belongs to it" in told
+    (tmp_path / "fine.yaml").write_text(narrow + "inference: {samples: 2001}\n")
+    assert load_controller(tmp_path / "fine.yaml").controller().infer(0.0, 0.0).stride > 0.1
 
 
 def test_all_mistakes_are_told_at_once_in_the_order_of_the_lines(tmp_path: Path) -> None:

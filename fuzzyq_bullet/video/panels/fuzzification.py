@@ -98,7 +98,10 @@ class Sets:
         ]
         x = round(self._at(value, 0.0)[0]) if known else None
         strongest = int(np.argmax(memberships)) if known else -1
-        text = (said or self._words[strongest]) if known else "–"
+        room = _WIDTH - style.text_width(name, 17) - 10
+        text, size = style.fitting(
+            (said or self._words[strongest]) if known else "–", room, (17, 15), bold=True
+        )
         if (name, x, text, *levels) == self._shown:
             return None
         self._shown = (name, x, text, *levels)
@@ -110,7 +113,7 @@ class Sets:
             if level:
                 image.paste(style.HEAT, origin, area.point(_DIMMED[level]))
                 image.paste(style.mixed(style.FAINT, style.TEXT, level / _LEVELS), origin, curve)
-        paint.write(image, (_LEFT + _WIDTH, 16), text, style.TEXT, 17, bold=True, align="r")
+        paint.write(image, (_LEFT + _WIDTH, 16), text, style.TEXT, size, bold=True, align="r")
         self._write_labels(image, levels, strongest)
         if x is not None:
             top, bottom = self._box[1] - self._top, self._box[3] - self._top
@@ -133,7 +136,7 @@ class Sets:
             x = min(max(x, self._box[0] + half), self._box[2] - half)
             if any(x - half < right and left < x + half for left, right in taken):
                 continue
-            taken.append((x - half - 2, x + half + 2))
+            taken.append((x - half - 4, x + half + 4))
             colour = style.mixed(style.FAINT, style.TEXT, levels[number] / _LEVELS)
             y = self._box[3] - self._top + 16
             paint.write(image, (x, y), one.label, colour, 15, bold=bold, align="m")
