@@ -277,6 +277,7 @@ def test_figure_4_shows_the_surface_of_ones_own_rules(
         inside("figure", 9, "--rules", path, "--out", tmp_path)
 
 
+@pytest.mark.slow
 def test_a_bench_compares_planners_with_ones_own_rules(
     field: Callable[..., Path], tmp_path: Path, inside: Call
 ) -> None:

@@ -97,6 +97,8 @@ def random_controller(seed: int) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize(
+    "seed", [*range(4), *(pytest.param(one, marks=pytest.mark.slow) for one in range(4, 12))]
+)
 def test_sets_tables_and_inference_of_any_kind_are_those_of_python(show: Open, seed: int) -> None:
     check(show, ControllerDefinition.model_validate(random_controller(seed)), grid(4))
