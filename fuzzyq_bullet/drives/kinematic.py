@@ -8,7 +8,8 @@ from fuzzyq_bullet.drives.base import Driver, longest_step_time
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.scenario.models import Robot, Scenario
+from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.trajectory import Collision
 
 STEP_TIME = longest_step_time(Robot())

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from fuzzyq_bullet.drives.base import longest_step_time
 from fuzzyq_bullet.geometry import wrap_angle
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.scenario.models import Robot
+from fuzzyq_bullet.scenario.robot import Robot
 
 TURN_GAIN = 4.0
 """Turn rate for an error of heading of 1 rad (1/s)."""

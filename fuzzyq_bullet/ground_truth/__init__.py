@@ -23,7 +23,8 @@ from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
 from fuzzyq_bullet.ground_truth.search import is_connected, shortest_route
 from fuzzyq_bullet.ground_truth.tangent_graph import Route
 from fuzzyq_bullet.quantities import Point
-from fuzzyq_bullet.scenario.models import Arena, Scenario
+from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import GRAZE, Obstacle
 
 _REMEMBERED = 128

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from fuzzyq_bullet.scenario.models import Arena
+from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
 
 OBSTACLE_HEIGHT = 0.4

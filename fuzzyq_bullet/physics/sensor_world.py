@@ -21,7 +21,7 @@ from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel
-from fuzzyq_bullet.scenario.models import Arena
+from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
 
 Point: TypeAlias = tuple[float, float, float]

@@ -8,7 +8,7 @@ from fuzzyq_bullet.physics.engine import Contact
 from fuzzyq_bullet.physics.obstacle_urdf import obstacles_urdf, walls_urdf
 from fuzzyq_bullet.physics.robot import Robot
 from fuzzyq_bullet.physics.sensor_world import Group, SensorWorld
-from fuzzyq_bullet.scenario.models import Arena
+from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
 
 

@@ -12,17 +12,10 @@ from fuzzyq_bullet.scenario.files import (
     save_scenario,
 )
 from fuzzyq_bullet.scenario.layouts import Random, realise
-from fuzzyq_bullet.scenario.models import (
-    Arena,
-    Drive,
-    Goal,
-    Limits,
-    Robot,
-    Scenario,
-    Start,
-    scenario_schema,
-)
+from fuzzyq_bullet.scenario.models import Drive, Limits, Scenario, scenario_schema
 from fuzzyq_bullet.scenario.options import cellular_task, random_task, with_options
+from fuzzyq_bullet.scenario.places import Arena, Goal, Start
+from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
 __all__ = [

@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import (
-    AfterValidator,
     BeforeValidator,
     Field,
     SerializeAsAny,
@@ -22,7 +21,6 @@ from pydantic import (
     ValidatorFunctionWrapHandler,
     WrapValidator,
     field_serializer,
-    model_validator,
 )
 from pydantic.json_schema import models_json_schema
 from pydantic_core import PydanticCustomError
@@ -31,16 +29,10 @@ from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, planner_names, sett
 from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.quantities import (
     MAX_OBSTACLES,
-    Angle,
     Count,
-    Flag,
-    Length,
     Model,
     Number,
-    Point,
 )
-from fuzzyq_bullet.robots import FUZZYQ, RobotModel, robot_model, robot_names
-from fuzzyq_bullet.robots.base import Acceleration, MaxSpeed, MaxTurnRate, TurnAcceleration
 from fuzzyq_bullet.scenario.expectations import (
     ANY_NAME,
     AnyExpect,
@@ -48,83 +40,13 @@ from fuzzyq_bullet.scenario.expectations import (
     expect_model,
 )
 from fuzzyq_bullet.scenario.layouts import AnyLayout
+from fuzzyq_bullet.scenario.places import Arena, Goal, Start
+from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.sensors.base import SENSORS, AnySensor, ExactSensor, SensorModel
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.shapes.motion import STILL
 
 Drive: TypeAlias = Literal["wheels", "kinematic"]
-
-
-class Arena(Model):
-    """The rectangle the run takes place in."""
-
-    size: tuple[Length, Length] = Field(default=(10.0, 10.0), description="Width and depth (m).")
-    walls: Flag = Field(default=True, description="Whether walls stand on its four edges.")
-
-
-class Start(Model):
-    """Where the robot starts."""
-
-    position: Point = Field(description="Centre of the robot (m).")
-    heading: Angle | None = Field(
-        default=None,
-        description="Direction it faces (rad), anticlockwise from x; default: to the goal.",
-    )
-
-
-class Goal(Model):
-    """Where the robot must stop."""
-
-    position: Point = Field(description="Centre of the goal (m).")
-    radius: Annotated[Number, Field(ge=0.05, le=10.0)] = Field(
-        default=0.2, description="The robot's centre must come to rest within it (m)."
-    )
-
-
-def _known_robot(name: str) -> str:
-    if name not in robot_names():
-        raise PydanticCustomError(
-            "unknown_robot", "must be one of {allowed}", {"allowed": list(robot_names())}
-        )
-    return name
-
-
-class Robot(Model):
-    """The robot, and limits of its motion: those of its model, where they are not given."""
-
-    model: Annotated[str, AfterValidator(_known_robot)] = Field(
-        default=FUZZYQ.name,
-        description="Which robot it is.",
-        json_schema_extra=lambda schema: schema.update(enum=list(robot_names())),
-    )
-    max_speed: MaxSpeed = Field(default=FUZZYQ.max_speed, description="Greatest speed (m/s).")
-    max_turn_rate: MaxTurnRate = Field(
-        default=FUZZYQ.max_turn_rate, description="Greatest turn rate (rad/s)."
-    )
-    acceleration: Acceleration = Field(
-        default=FUZZYQ.acceleration, description="Greatest change of speed, up or down (m/s²)."
-    )
-    turn_acceleration: TurnAcceleration = Field(
-        default=FUZZYQ.turn_acceleration, description="Greatest change of the turn rate (rad/s²)."
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _with_limits_of_its_model(cls, data: Any) -> Any:
-        if not isinstance(data, Mapping) or data.get("model") not in robot_names():
-            return data
-        limits = robot_model(data["model"]).model_dump(include=set(cls.model_fields) - {"model"})
-        return {**limits, **data}
-
-    @property
-    def spec(self) -> RobotModel:
-        """Footprint, wheels, masses and URDF of the robot."""
-        return robot_model(self.model)
-
-    @property
-    def radius(self) -> float:
-        """Radius of the robot's footprint (m): the paper's unit S_p."""
-        return self.spec.radius
 
 
 class Limits(Model):

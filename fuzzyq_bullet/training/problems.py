@@ -23,7 +23,8 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import CHOICES, firing, weighed
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.q_learning import act, sense
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, PlannerSettings
-from fuzzyq_bullet.scenario.models import Limits, Start
+from fuzzyq_bullet.scenario.models import Limits
+from fuzzyq_bullet.scenario.places import Start
 from fuzzyq_bullet.training.rewards import USUAL, Reward, RewardSettings, Transition
 from fuzzyq_bullet.training.tasks import Tasks
 
