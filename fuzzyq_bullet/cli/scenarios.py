@@ -87,11 +87,18 @@ def import_map(
     typer.echo(target)
 
 
-def schema(*, plugin: PluginOption = None) -> None:
+def schema(
+    *,
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="As a page that explains every key instead.")
+    ] = False,
+    plugin: PluginOption = None,
+) -> None:
     """Print the JSON Schema of scenario files, with what plugins add to them."""
     from fuzzyq_bullet.scenario import scenario_schema
+    from fuzzyq_bullet.scenario.reference import scenario_reference
 
-    typer.echo(dumps(scenario_schema(), indent=2))
+    typer.echo(scenario_reference() if markdown else dumps(scenario_schema(), indent=2))
 
 
 def list_scenarios(*, json: Json = False) -> None:

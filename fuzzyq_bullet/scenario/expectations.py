@@ -27,7 +27,7 @@ a planner as a mere name, and no expectation of which nothing is known."""
 class Expect(Model):
     """What CI holds the run to."""
 
-    outcome: OutcomeName = "goal"
+    outcome: OutcomeName = Field(default="goal", description="How the run must end.")
     min_clearance: Annotated[Number, Field(ge=0.0)] | None = Field(
         default=None, description="Least distance to anything (m)."
     )

@@ -116,8 +116,12 @@ class Scenario(Model):
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,99}$")] = Field(
         description="Names the files of the run: letters, digits, dot, dash, underscore."
     )
-    description: Annotated[str, Field(max_length=2000)] = ""
-    seed: Annotated[Count, Field(ge=0, le=2**63 - 1)] = 0
+    description: Annotated[str, Field(max_length=2000)] = Field(
+        default="", description="What it shows, for people to read."
+    )
+    seed: Annotated[Count, Field(ge=0, le=2**63 - 1)] = Field(
+        default=0, description="Seed of every random number of the run."
+    )
     arena: Arena = Arena()
     start: Start
     goal: Goal
@@ -129,8 +133,13 @@ class Scenario(Model):
         default_factory=_default_planner,
         description="A planner's name, or its parameters with or without the name.",
     )
-    drive: Drive = "wheels"
-    obstacles: tuple[Obstacle, ...] = Field(default=(), max_length=MAX_OBSTACLES)
+    drive: Drive = Field(
+        default="wheels",
+        description="What moves the robot: its wheels, in physics, or Eq. 17 exactly.",
+    )
+    obstacles: tuple[Obstacle, ...] = Field(
+        default=(), max_length=MAX_OBSTACLES, description="What stands in the way."
+    )
     random: AnyLayout | None = Field(
         default=None, description="Obstacles to be drawn; without a layout, scattered."
     )

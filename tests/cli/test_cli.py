@@ -215,6 +215,17 @@ def test_schema_is_one_that_the_bundled_scenarios_fulfil(fuzzyq: Call) -> None:
         validator.validate(yaml.safe_load(path.read_text()))
 
 
+def test_the_reference_tells_of_every_key_of_the_schema(fuzzyq: Call) -> None:
+    page = Path(__file__).parents[2] / "docs" / "scenario.md"
+    told = fuzzyq("schema", "--markdown").stdout
+    assert told == page.read_text(), f"fuzzyq schema --markdown > {page} makes it anew"
+    schema = json.loads(fuzzyq("schema").stdout)
+    keys = [*schema["properties"], *schema["$defs"]["Robot"]["properties"]]
+    keys += schema["$defs"]["Cylinder"]["properties"]
+    for key in keys:
+        assert f"\n| `{key}` | " in told, key
+
+
 def test_the_schema_knows_what_plugins_add(fuzzyq: Call) -> None:
     extend = Path(__file__).parents[2] / "examples" / "extend"
     kinds = ("shape", "motion", "layout", "robot", "planner", "sensor", "expectation")
