@@ -18,7 +18,7 @@ WALL_THICKNESS = 0.1
 
 
 def obstacles_urdf(obstacles: Sequence[Shape]) -> tuple[str, dict[str, str]]:
-    """Return a URDF with one link that holds a collision shape for every obstacle.
+    """Return a URDF with one link that holds collision shapes for every obstacle.
 
     Returns:
         The text, and the mesh files beside it that it names, text by name.
@@ -26,27 +26,22 @@ def obstacles_urdf(obstacles: Sequence[Shape]) -> tuple[str, dict[str, str]]:
     shapes: list[str] = []
     meshes: dict[str, str] = {}
     for obstacle in obstacles:
-        solid = obstacle.collision(OBSTACLE_HEIGHT)
-        geometry = solid.geometry
-        if solid.mesh:
-            name = f"{len(meshes)}.obj"
-            meshes[name] = solid.mesh
-            geometry = f'<mesh filename="{name}"/>'
-        shapes.append(_shape(*obstacle.position, OBSTACLE_HEIGHT, solid.yaw, geometry))
+        for solid in obstacle.collisions(OBSTACLE_HEIGHT):
+            geometry = solid.geometry
+            if solid.mesh:
+                name = f"{len(meshes)}.obj"
+                meshes[name] = solid.mesh
+                geometry = f'<mesh filename="{name}"/>'
+            shapes.append(_shape(*obstacle.position, OBSTACLE_HEIGHT, solid.yaw, geometry))
     return _static("obstacles", shapes), meshes
 
 
 def walls_urdf(arena: Arena) -> str:
     """Return a URDF of the four walls, which stand just outside the arena's rectangle."""
-    width, depth = arena.size
-    half, long = WALL_THICKNESS / 2, width + 2 * WALL_THICKNESS
-    walls = (
-        (width / 2, -half, long, WALL_THICKNESS),
-        (width / 2, depth + half, long, WALL_THICKNESS),
-        (-half, depth / 2, WALL_THICKNESS, depth),
-        (width + half, depth / 2, WALL_THICKNESS, depth),
-    )
-    solids = [(x, y, f'<box size="{a!r} {b!r} {WALL_HEIGHT!r}"/>') for x, y, a, b in walls]
+    solids = [
+        (x, y, f'<box size="{a!r} {b!r} {WALL_HEIGHT!r}"/>')
+        for x, y, a, b in arena.bars(WALL_THICKNESS)
+    ]
     return _static("walls", [_shape(x, y, WALL_HEIGHT, 0.0, box) for x, y, box in solids])
 
 

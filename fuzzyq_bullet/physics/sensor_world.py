@@ -147,8 +147,7 @@ def meshes(obstacles: Sequence[Shape], arena: Arena) -> Iterator[Mesh]:
     """Yield vertices and triangle indices of meshes that together show every face."""
     outlines = [obstacle.faces() for obstacle in obstacles]
     if arena.walls:
-        width, depth = arena.size
-        outlines.append(np.array([(0, 0), (width, 0), (width, depth), (0, depth)], dtype=float))
+        outlines.append(np.array(arena.bounds.corners))
     batch: list[Outline] = []
     corners = 0
     for outline in outlines:

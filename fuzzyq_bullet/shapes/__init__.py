@@ -18,6 +18,8 @@ from fuzzyq_bullet.shapes.cylinder import ROUNDNESS, Cylinder, Cylinders  # isor
 from fuzzyq_bullet.shapes.box import Box, Boxes
 from fuzzyq_bullet.shapes.convex import ConvexPolygons, ConvexShape
 from fuzzyq_bullet.shapes.motion import MOTIONS, Motion, Pose, Still, register_motion
+from fuzzyq_bullet.shapes.polygon import Polygon
+from fuzzyq_bullet.shapes.polygons import Polygons
 
 __all__ = [
     "GRAZE",
@@ -33,6 +35,8 @@ __all__ = [
     "Cylinders",
     "Motion",
     "Obstacle",
+    "Polygon",
+    "Polygons",
     "Pose",
     "Shape",
     "ShapeGroup",
