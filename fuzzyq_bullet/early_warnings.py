@@ -32,7 +32,7 @@ def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
         realised: The same with every obstacle listed.
     """
     found = [*_degrees(given), *_too_short(given), *_gaps(given), *_too_thin(given)]
-    if given.expect.outcome == "goal" and has_way(realised) is False:
+    if given.expect.outcome == "goal" and not has_way(realised):
         found.append(Problem(("goal",), NO_WAY))
     return problem_lines(file, found)
 
