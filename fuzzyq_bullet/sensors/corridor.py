@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.planning.base import RangeSensor
 from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.sensors.base import SensorModel
+from fuzzyq_bullet.shapes.outlines import FINEST
 
 Floats: TypeAlias = NDArray[np.float64]
 Point: TypeAlias = tuple[float, float]
@@ -43,9 +44,9 @@ def offsets(half_width: float, spacing: float = WIDEST) -> Floats:
 
     Args:
         half_width: Half the width of a line (m).
-        spacing: Neighbours are less than this apart (m); ``WIDEST`` at most.
+        spacing: Neighbours are less than this apart (m); taken as within ``FINEST`` and ``WIDEST``.
     """
-    spacing = min(spacing, WIDEST)
+    spacing = min(max(spacing, FINEST), WIDEST)
     ends = np.append(-SPREAD[0], SPREAD)
     parts = (np.diff(ends) * half_width / spacing).astype(int) + 1
     parts[0] += 1 - parts[0] % 2  # odd: the rays in the middle are as many on either side

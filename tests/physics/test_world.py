@@ -21,6 +21,7 @@ from fuzzyq_bullet.sensors import (
     offsets,
 )
 from fuzzyq_bullet.shapes import thinnest
+from fuzzyq_bullet.shapes.outlines import FINEST
 
 FIELD = Arena(size=(6.0, 6.0))
 
@@ -176,11 +177,11 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
             assert ahead < 0.5
 
 
-@given(st.floats(0.07, 2.02), st.floats(0.02, 1.0))
+@given(st.floats(0.07, 2.02), st.floats(0.0, 1.0))
 def test_rays_are_as_near_to_each_other_as_is_asked_for(half, spacing):
     aside = half * offsets(half, spacing)
     both = np.concatenate([-aside[::-1], aside])
-    assert np.diff(both).max() < min(spacing, WIDEST) + 1e-9
+    assert np.diff(both).max() < min(max(spacing, FINEST), WIDEST) + 1e-9
     assert np.abs(aside[:, None] - half * SPREAD).min(axis=0).max() < 1e-9
     assert offsets(FUZZYQ.radius + SENSOR_MARGIN) is SPREAD  # the paper's robot, usual obstacles
 
