@@ -110,3 +110,15 @@ def test_github_is_told_at_the_line(inside: Call, tmp_path: Path) -> None:
     done = inside("check", path, "--github", "--drive", "kinematic")
     (line,) = [line for line in done.stdout.splitlines() if line.startswith("::warning")]
     assert ",line=2," in line
+
+
+def test_a_tip_too_sharp_for_the_sensor_is_told(tmp_path):
+    file = tmp_path / "tip.yaml"
+    file.write_text(
+        "name: tip\nstart: {position: [1.0, 1.0]}\ngoal: {position: [9.0, 9.0]}\nobstacles:\n"
+        "  - {shape: polygon, points: [[4.0, 4.0], [5.0, 4.0], [5.0, 5.0], [4.0, 5.0]]}\n"
+        "  - {shape: polygon, points: [[3.0, 3.0], [4.0, 3.05], [4.0, 2.95]]}\n"
+    )
+    scenario = load_scenario(file)
+    [line] = early_warnings(str(file), scenario, scenario)
+    assert line.startswith(f"{file}:6: obstacles[1]: has a sharp tip")
