@@ -44,7 +44,7 @@ def world(path: Path) -> ForeignMap:
 
 def _robot(found: ForeignMap, robot: Mapping, *, first: bool) -> None:
     if not first or robot.number("number", 1, least=0) > 1:
-        found.left_out.append(f"{robot.where('state')}: only the first robot drives")
+        found.left_out.append(f"line {robot.at('state')}: only the first robot drives")
         if not first:
             return
     if "state" in robot:
@@ -70,10 +70,10 @@ def _obstacles(found: ForeignMap, one: Mapping) -> None:
     distribution = one.get("distribution")
     name = distribution.get("name") if isinstance(distribution, dict) else distribution
     if name not in (None, "manual"):
-        found.left_out.append(f"{one.where('distribution')}: drawn by chance, so not in the file")
+        found.left_out.append(f"line {one.at('distribution')}: drawn by chance, so not in the file")
         return
     if any(key in one for key in ("behavior", "velocity", "goal")):
-        found.left_out.append(f"{one.where('state')}: may move there, and stands still here")
+        found.left_out.append(f"line {one.at('state')}: may move there, and stands still here")
     states = _states(one)
     shapes = one.items("shape") if "shape" in one else []
     if not shapes:
@@ -109,13 +109,13 @@ def _placed(shape: Mapping, x: float, y: float, yaw: float) -> list[tuple[Obstac
 
     if kind == "circle":
         radius = shape.number("radius", 0.2, least=1e-6, most=_FAR)
-        note = f"{shape.where('radius')}: grown to {THIN:g} m" if radius < THIN else ""
+        note = f"line {shape.at('radius')}: grown to {THIN:g} m" if radius < THIN else ""
         one: dict[str, Any] = {"shape": "cylinder", "position": (x, y)}
         return [({**one, "radius": max(radius, THIN)}, note)]
     if kind == "rectangle":
         size = [shape.number(key, 1.0, least=1e-6, most=_FAR) for key in ("length", "width")]
         made, grown = rectangle((x, y), (size[0], size[1]), yaw)
-        return [(made, f"{shape.where('width')}: grown to {THIN:g} m" if grown else "")]
+        return [(made, f"line {shape.at('width')}: grown to {THIN:g} m" if grown else "")]
     if not isinstance(shape.get("vertices"), list):
         raise UserError(f"{shape.where('vertices')}: expected a list of points [x, y]")
     inner = shape.inner("vertices")
@@ -126,6 +126,6 @@ def _placed(shape: Mapping, x: float, y: float, yaw: float) -> list[tuple[Obstac
     for (ax, ay), (bx, by) in pairwise(points):
         length, turn = math.hypot(bx - ax, by - ay), math.atan2(by - ay, bx - ax)
         middle = ((ax + bx) / 2, (ay + by) / 2)
-        note = "" if parts else f"{shape.where('vertices')}: lines become {THIN:g} m thick"
+        note = "" if parts else f"line {shape.at('vertices')}: lines become {THIN:g} m thick"
         parts.append((rectangle(middle, (length, 0.0), turn)[0], note))
     return parts

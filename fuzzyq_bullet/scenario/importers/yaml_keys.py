@@ -58,6 +58,10 @@ class Mapping:
         name = f"{self._key}[{key}]" if isinstance(key, int) else f"{self._key}.{key}".lstrip(".")
         return f"{self._path}:{line}: {name}"
 
+    def at(self, key: Key) -> str:
+        """Return line and key of a value, for notes that go into a file."""
+        return self.where(key).removeprefix(f"{self._path}:").replace(": ", " ", 1)
+
     def get(self, key: Key) -> Any:
         """Return a value as plain data; None if it is not there."""
         child = self.node.children.get(key)
@@ -73,7 +77,7 @@ class Mapping:
         if child is None or not isinstance(child.data, dict | list):
             got = "nothing" if child is None else shorten(child.data)
             raise UserError(f"{self.where(key)}: expected a mapping or a list, got {got}")
-        name = self.where(key).split(": ", 1)[1]
+        name = self.at(key).split(" ", 1)[1]
         return Mapping(child, self._path, name)
 
     def items(self, key: Key) -> list[Mapping]:

@@ -176,9 +176,9 @@ def outline(points: Floats, triangles: NDArray[Any], band: Band) -> tuple[Obstac
     sides = np.linalg.norm(np.diff(corners[:3], axis=0), axis=1)
     if sides.min() < THIN:
         return _polygon(around.buffer(THIN / 2, join_style="mitre")), True
-    if len(around.exterior.coords) > _MOST_CORNERS:
-        around = around.simplify(0.001)
-    return _polygon(around), False
+    # Without the corners that rounding alone has made; a round mesh loses up to 1 mm.
+    fine = len(around.exterior.coords) <= _MOST_CORNERS
+    return _polygon(around.simplify(1e-6 if fine else 0.001)), False
 
 
 def _polygon(shape: Any) -> Obstacle:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -258,9 +259,11 @@ class _Reader:
             if one["shape"] == "polygon":
                 corners += one["points"]
             else:
-                (x, y), size = one["position"], one.get("size", (0.0, 0.0))
-                reach = one.get("radius", float(np.hypot(*size)) / 2)
-                corners += [(x - reach, y - reach), (x + reach, y + reach)]
+                (x, y), (length, width) = one["position"], one.get("size", (0.0, 0.0))
+                cos, sin = (abs(f(one.get("yaw", 0.0))) for f in (math.cos, math.sin))
+                dx = one.get("radius", (cos * length + sin * width) / 2)
+                dy = one.get("radius", (sin * length + cos * width) / 2)
+                corners += [(x - dx, y - dy), (x + dx, y + dy)]
         low, high = np.min(corners, axis=0) - _MARGIN, np.max(corners, axis=0) + _MARGIN
         left, bottom = (float(np.floor(edge * 10) / 10) for edge in low)
         right, top = (float(np.ceil(edge * 10) / 10) for edge in high)
