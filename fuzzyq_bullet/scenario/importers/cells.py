@@ -52,6 +52,8 @@ def outlines_of(blocked: Mask, most: int = MAX_OBSTACLES) -> list[Ring]:
     waiting: list[tuple[Mask, int, int]] = [(blocked, 0, 0)]
     while waiting and len(rings) <= most:
         area, column, row = waiting.pop()
+        if not area.any():
+            continue
         pieces, count = ndimage.label(area)
         if count > most:
             return [[] for _ in range(count)]

@@ -42,9 +42,7 @@ def read_grey(path: Path) -> NDArray[np.float64]:
             picture = Image.open(io.BytesIO(content), formats=_FORMATS)
             width, height = picture.size
             if width * height > _MAX_PIXELS:
-                raise UserError(
-                    f"{path}: has {width} × {height} pixels; at most {_MAX_PIXELS} are read"
-                )
+                raise UserError(f"{path}: has more than {_MAX_PIXELS} pixels, which are not read")
             picture.load()
             if picture.mode.startswith("I") or picture.mode == "F":
                 values = np.array(picture, dtype=np.float64) / 65535.0
@@ -55,6 +53,10 @@ def read_grey(path: Path) -> NDArray[np.float64]:
                 values = grey * opaque + (1.0 - opaque)
     except UserError:
         raise
+    except Image.DecompressionBombError as error:
+        raise UserError(
+            f"{path}: has more than {_MAX_PIXELS} pixels, which are not read"
+        ) from error
     except Exception as error:  # a damaged file makes Pillow raise ten kinds
         raise UserError(f"{path}: is no picture (PNG, PGM, BMP) that can be read") from error
     if not values.size:
