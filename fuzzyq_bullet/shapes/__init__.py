@@ -12,6 +12,7 @@ from fuzzyq_bullet.shapes.base import (
     Shape,
     ShapeGroup,
     register_shape,
+    thinnest,
 )
 
 from fuzzyq_bullet.shapes.cylinder import ROUNDNESS, Cylinder, Cylinders  # isort: skip
@@ -43,4 +44,5 @@ __all__ = [
     "Still",
     "register_motion",
     "register_shape",
+    "thinnest",
 ]

@@ -14,7 +14,7 @@ from fuzzyq_bullet.quantities import DECIMALS, Model, ModelRegistry, Point
 from fuzzyq_bullet.shapes.motion import STILL, AnyMotion
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from typing_extensions import Self
 
@@ -37,12 +37,13 @@ class Collision(NamedTuple):
     Attributes:
         geometry: What a URDF has within ``<geometry>``.
         yaw: Turn about its upright axis (rad).
-        mesh: Text of an OBJ file about the shape's centre, convex; ``geometry`` is empty then.
+        prism: Vertices about the shape's centre (m), shape (2·K, 3), of a convex prism: first those
+            below, then those above them; ``geometry`` is empty then.
     """
 
     geometry: str
     yaw: float = 0.0
-    mesh: str = ""
+    prism: Floats | None = None
 
 
 class Shape(Model, ABC):
@@ -89,7 +90,10 @@ class Shape(Model, ABC):
         return [self.outline(corners)]
 
     def thickness(self) -> float:
-        """Return the width (m) of its thinnest part: rays as far apart might miss it."""
+        """Return the width (m) of its thinnest part, which rays nearer to each other surely see.
+
+        Of what points outwards, a right angle is not thin; a sharper angle is.
+        """
         return least_width(self.outline())
 
     @abstractmethod
@@ -233,6 +237,11 @@ def register_shape(shape: _S) -> _S:
     """
     SHAPES.add(shape)
     return shape
+
+
+def thinnest(shapes: Iterable[Shape]) -> float:
+    """Return the width (m) of the thinnest part of all shapes; infinite if there are none."""
+    return min((shape.thickness() for shape in shapes), default=math.inf)
 
 
 def least_width(polygon: Floats) -> float:

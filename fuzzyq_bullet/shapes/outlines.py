@@ -17,6 +17,11 @@ if TYPE_CHECKING:
 
 LEAST_AREA = 1e-4
 """Least area of a polygon (m²): 1 cm × 1 cm."""
+WIDTHS = (0.05, 0.04, 0.03, 0.02)
+"""Distances of rays that are tried (m), widest first."""
+FINEST = WIDTHS[-1]
+_UNSEEN = 0.0105
+"""How far a corner may be from the nearest disc of such a width inside the polygon (m)."""
 _REMEMBERED = 20_000
 
 
@@ -135,12 +140,24 @@ def _turn(place: Floats, a: int, b: int, c: int) -> float:
 
 
 @lru_cache(maxsize=_REMEMBERED)
-def thinnest(points: tuple[Point, ...]) -> float:
-    """Return the width (m) of the thinnest part of a simple polygon.
+def seen_by_rays(points: tuple[Point, ...]) -> float:
+    """Return how far apart parallel rays may be (m) that see a simple polygon, from any side.
+
+    They meet every disc in it that is as wide as they are apart. What no such disc covers is a tip
+    or a thin part; it may reach ``_UNSEEN`` farther, as a right angle does at 0.05 m.
 
     Args:
         points: Its corners, in either order (m).
+
+    Returns:
+        The first of ``WIDTHS`` that is enough; 0 if none is.
     """
     import shapely
 
-    return float(shapely.minimum_clearance(shapely.Polygon(points)))
+    solid, corners = shapely.Polygon(points), shapely.points(points)
+    for width in WIDTHS:
+        half = 0.97 * width / 2  # something exactly as wide is not lost to rounding
+        covered = solid.buffer(-half).buffer(half)
+        if not covered.is_empty and np.max(shapely.distance(corners, covered)) <= _UNSEEN:
+            return width
+    return 0.0

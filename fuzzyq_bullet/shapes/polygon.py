@@ -12,8 +12,8 @@ from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.quantities import DECIMALS, Point
 from fuzzyq_bullet.shapes.base import Collision, Floats, Shape, register_shape
-from fuzzyq_bullet.shapes.convex import convex_mesh
-from fuzzyq_bullet.shapes.outlines import convex_pieces, mistake_of, thinnest
+from fuzzyq_bullet.shapes.convex import prism_over
+from fuzzyq_bullet.shapes.outlines import convex_pieces, mistake_of, seen_by_rays
 from fuzzyq_bullet.shapes.polygons import Polygons
 
 if TYPE_CHECKING:
@@ -89,8 +89,8 @@ class Polygon(Shape):
         return list(convex_pieces(self.points))
 
     def thickness(self) -> float:
-        """Return the width (m) of its thinnest part, tips counted as far as they matter."""
-        return thinnest(self.points)
+        """Return the width (m) of its thinnest part, at most 0.05 m; 0 if it is below 0.02 m."""
+        return seen_by_rays(self.points)
 
     def faces(self) -> Floats:
         """Return the corners."""
@@ -98,7 +98,7 @@ class Polygon(Shape):
 
     def collisions(self, height: float) -> list[Collision]:
         """Return a convex mesh for each of the pieces."""
-        return [convex_mesh(piece - self.position, height) for piece in self.pieces()]
+        return [prism_over(piece - self.position, height) for piece in self.pieces()]
 
     def moved(self, x: float, y: float, turn: float) -> Self:
         """Return it turned about the origin (rad) and then moved (m), rounded to 0.1 mm."""

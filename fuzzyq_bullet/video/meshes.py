@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _CHUNK = 400
 """Obstacles of one mesh: PyBullet holds at most 131072 corners a shape."""
-EVERYWHERE: Floats = 1e3 * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+EVERYWHERE: Floats = 2e3 * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 """A piece of ground (m) that holds every arena, for who can look at all of it."""
 _CIRCLE = np.stack([f(np.linspace(0.0, math.tau, 32, endpoint=False)) for f in (np.cos, np.sin)], 1)
 _DOWN = 0.05
