@@ -129,6 +129,21 @@ def test_what_a_world_has_thin_is_grown_and_named(tmp_path: Path) -> None:
     assert found.scenario.obstacles[0].thickness() == pytest.approx(0.02)
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning:collada.*")
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+def test_a_collada_mesh_keeps_its_unit_and_its_axis_upwards(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    block = trimesh.creation.box((300, 40, 100))  # centimetres; y is up
+    block.export(tmp_path / "block.dae")
+    text = (tmp_path / "block.dae").read_text()
+    text = text.replace("<up_axis>", '<unit name="centimeter" meter="0.01"/><up_axis>')
+    (tmp_path / "block.dae").write_text(text)
+    path = world(tmp_path, "<mesh><uri>block.dae</uri></mesh>")
+    field = Field.of(import_map(path, APART).scenario.obstacles)
+    inside = field.clearance([(1.49, 0.0), (0.0, 0.49), (1.51, 0.0), (0.0, 0.51)]) < 0.0
+    assert inside.tolist() == [True, True, False, False]
+
+
 def test_a_task_of_movingai_names_its_map_start_and_goal() -> None:
     found = import_map(MAPS / "cave.map.scen", options_of(number=2, resolution=0.5))
     scenario = found.scenario

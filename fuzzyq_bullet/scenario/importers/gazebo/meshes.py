@@ -20,8 +20,13 @@ from fuzzyq_bullet.wording import shorten
 _MAX_BYTES = 50_000_000
 _MAX_FACES = 1_000_000
 _SUFFIXES = (".stl", ".obj", ".dae")
-_UP = {"X_UP": (1, 2, 0), "Y_UP": (2, 0, 1), "Z_UP": (0, 1, 2)}
-"""Which of a file's axes are x, y and z where z is up."""
+_AS_IT_IS = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+_UP = {
+    "X_UP": ((0, -1, 0), (0, 0, -1), (1, 0, 0)),
+    "Y_UP": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
+    "Z_UP": _AS_IT_IS,
+}
+"""Right, inwards and up of a COLLADA file turned to x, y and z."""
 
 
 def read_mesh(path: Path, where: str) -> tuple[Floats, NDArray[np.intp]]:
@@ -46,10 +51,7 @@ def read_mesh(path: Path, where: str) -> tuple[Floats, NDArray[np.intp]]:
             "pip install 'fuzzyq_bullet[maps]'"
         ) from error
     content = read_bytes(path, what="a mesh", most=_MAX_BYTES)
-    turned: tuple[int, ...] = (0, 1, 2)
-    unit = 1.0
-    if suffix == ".dae":
-        turned, unit = _conventions(path)
+    turned, unit = _conventions(path) if suffix == ".dae" else (_AS_IT_IS, 1.0)
     try:
         mesh: Any = trimesh.load(
             io.BytesIO(content), file_type=suffix[1:], force="mesh", skip_materials=True
@@ -67,7 +69,7 @@ def read_mesh(path: Path, where: str) -> tuple[Floats, NDArray[np.intp]]:
         raise UserError(f"{path}: is a mesh without triangles, or with corners that are nowhere")
     if len(triangles) > _MAX_FACES:
         raise UserError(f"{path}: {len(triangles)} triangles; at most {_MAX_FACES} are read")
-    return points[:, turned] * unit, triangles
+    return points @ np.array(turned).T * unit, triangles
 
 
 def bodies(points: Floats, triangles: NDArray[np.intp]) -> list[NDArray[np.intp]]:
@@ -84,7 +86,7 @@ def bodies(points: Floats, triangles: NDArray[np.intp]) -> list[NDArray[np.intp]
     return [triangles[chosen] for chosen in np.split(order, borders)]
 
 
-def _conventions(path: Path) -> tuple[tuple[int, ...], float]:
+def _conventions(path: Path) -> tuple[Any, float]:
     """Return the axes and the unit (m) of a COLLADA file, which is safe to read after this."""
     asset = read_xml(path, "a mesh (COLLADA)").first("asset")
     up = asset.first("up_axis") if asset else None

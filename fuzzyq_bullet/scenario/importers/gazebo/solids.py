@@ -172,7 +172,8 @@ def outline(points: Floats, triangles: NDArray[Any], band: Band) -> tuple[Obstac
     around: Any = shapely.MultiPoint(flat).convex_hull
     if not isinstance(around, shapely.Polygon):
         return _polygon(around.buffer(THIN / 2, cap_style="square", join_style="mitre")), True
-    corners = np.array(around.minimum_rotated_rectangle.exterior.coords)
+    rectangle_around: Any = around.minimum_rotated_rectangle
+    corners = np.array(rectangle_around.exterior.coords)
     sides = np.linalg.norm(np.diff(corners[:3], axis=0), axis=1)
     if sides.min() < THIN:
         return _polygon(around.buffer(THIN / 2, join_style="mitre")), True
