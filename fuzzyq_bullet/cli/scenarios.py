@@ -55,13 +55,35 @@ def _look_at(file: str) -> tuple[tuple[str, ...], list[str]]:
 
 def import_map(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="A map; its suffix chooses the importer.")
+        Path,
+        typer.Argument(metavar="FILE", help="A map; suffix and content choose the importer."),
     ],
     *,
     out: Annotated[
         Path | None,
         typer.Option(help="Scenario file to write; by default FILE as .yaml, here.", **FILE),
     ] = None,
+    resolution: Annotated[
+        float | None, typer.Option(metavar="M", help="Size of a pixel or cell (m).")
+    ] = None,
+    start: Annotated[
+        str | None,
+        typer.Option(metavar="X,Y[,HEADING]", help="Where the robot starts (m), and faces (rad)."),
+    ] = None,
+    goal: Annotated[
+        str | None, typer.Option(metavar="X,Y", help="Where the robot must stop (m).")
+    ] = None,
+    crop: Annotated[
+        str | None,
+        typer.Option(metavar="X0,Y0,X1,Y1", help="Keep this part of the map alone (m)."),
+    ] = None,
+    unknown: Annotated[
+        str, typer.Option(help="What unknown cells of a ROS map are: blocked, or free.")
+    ] = "blocked",
+    number: Annotated[
+        int, typer.Option(min=1, help="Which task of a .scen file, counted from 1.")
+    ] = 1,
+    robot: Annotated[str | None, typer.Option(metavar="MODEL", help="The robot's model.")] = None,
     plugin: PluginOption = None,
     replace: Annotated[
         bool, typer.Option("--replace", help="Replace a file that is there already.")
@@ -69,21 +91,40 @@ def import_map(
 ) -> None:
     """Make a scenario file from a map, and print its path.
 
+    Reads ROS maps, Gazebo worlds, pictures, MovingAI maps and tasks, and worlds of ir-sim
+    (docs/maps.md). What the scenario cannot hold is named on stderr and at the head of the file.
+
     Raises:
         UserError: If there is no importer for the map, it is wrong, or the file cannot be written.
     """
-    from fuzzyq_bullet.files import refuse_inputs, writable_files
+    from fuzzyq_bullet.cli.options import say
+    from fuzzyq_bullet.errors import printable
+    from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
     from fuzzyq_bullet.outputs import plugin_inputs
-    from fuzzyq_bullet.scenario import save_scenario
-    from fuzzyq_bullet.scenario.importers import import_map
+    from fuzzyq_bullet.scenario import dump_scenario
+    from fuzzyq_bullet.scenario.importers import ImportOptions, import_map, options_of
 
-    scenario = import_map(file)
     target = out or Path(f"{file.stem}.yaml")
     writable_files(target.parent, [target.name])
     refuse_inputs([target], [file, *plugin_inputs(plugin or [])])
     if target.exists() and not replace:
         raise UserError(f"{target}: is there already; --replace replaces it, --out names another")
-    save_scenario(scenario, target)
+    options: ImportOptions = options_of(
+        resolution=resolution,
+        start=start,
+        goal=goal,
+        crop=crop,
+        unknown=unknown,
+        number=number,
+        robot=robot,
+    )
+    imported = import_map(file, options)
+    notes = [f"left out: {printable(line)}" for line in imported.left_out]
+    head = [f"Imported from {printable(file.name)}.", *notes]
+    lines = "".join(f"# {line}\n" for line in head) if notes else ""
+    write_text(target, lines + dump_scenario(imported.scenario))
+    for note in notes:
+        say(note)
     typer.echo(target)
 
 
