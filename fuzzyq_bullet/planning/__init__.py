@@ -1,6 +1,7 @@
 """Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
 
 from fuzzyq_bullet.planning.base import Motion, Observation, Planner, RangeSensor
+from fuzzyq_bullet.planning.commands import Answer, CommandSettings, TwistCommand, WheelCommand
 from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
@@ -27,6 +28,8 @@ from fuzzyq_bullet.planning.settings import (
 __all__ = [
     "DEFAULT_PLANNER",
     "MODES",
+    "Answer",
+    "CommandSettings",
     "Decision",
     "DirectPlanner",
     "FuzzyPlanner",
@@ -44,6 +47,8 @@ __all__ = [
     "QLearningSettings",
     "RangeSensor",
     "RoutineSettings",
+    "TwistCommand",
+    "WheelCommand",
     "make_planner",
     "planner_names",
     "register_planner",
