@@ -7,6 +7,7 @@ from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
 from fuzzyq_bullet.planning.policies import policy_of
+from fuzzyq_bullet.planning.process import ProcessPlanner, ProcessSettings
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS, DirectPlanner
 from fuzzyq_bullet.planning.registry import (
     DEFAULT_PLANNER,
@@ -43,6 +44,8 @@ __all__ = [
     "Observation",
     "Planner",
     "PlannerSettings",
+    "ProcessPlanner",
+    "ProcessSettings",
     "QLambdaSettings",
     "QLearningSettings",
     "RangeSensor",
@@ -74,3 +77,4 @@ register_planner(
     FuzzyQLambdaSettings,
     lambda settings, rng: FuzzyQLambdaPlanner(settings),
 )
+register_planner("process", ProcessSettings, ProcessPlanner)
