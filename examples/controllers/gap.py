@@ -20,12 +20,12 @@ def main() -> None:
         rays = seen["rays"]
         costs = []  # far from the goal's direction is bad, and so is what stands near
         for k, one in enumerate(angles):
-            near = min(rays[(k + j) % len(rays)] for j in (-2, -1, 0, 1, 2))
-            costs.append(abs(math.remainder(one - bearing, math.tau)) + 3.0 * max(0.0, 0.9 - near))
+            near = min(rays[(k + j) % len(rays)] for j in range(-5, 6))
+            costs.append(abs(math.remainder(one - bearing, math.tau)) + 4.0 * max(0.0, 1.1 - near))
         angle = math.remainder(angles[costs.index(min(costs))], math.tau)
         if abs(angle - bearing) < math.tau / len(angles):
             angle = bearing
-        ahead = min(rays[k] for k in (-2, -1, 0, 1, 2)) - robot["radius"]
+        ahead = min(rays[k] for k in range(-4, 5)) - robot["radius"]
         speed = robot["max_speed"] * max(0.0, math.cos(angle)) * min(1.0, ahead / ROOM)
         distance = math.hypot(gx - x, gy - y)
         answer = {"twist": [min(speed, max(0.1, distance)), 2.0 * angle]}

@@ -195,6 +195,8 @@ def _policy_problem(scenario: Scenario, *, planner_is_given: bool, sound: bool) 
             refuse_other_field(realise(scenario))
     except UserError as error:
         if isinstance(scenario.planner, ProcessSettings):
+            if not scenario.planner.command:
+                return Problem(("planner",), error.problems[0])
             return Problem(("planner", "command"), error.problems[0].removeprefix("command: "))
         loc = ("planner", "policy") if planner_is_given else ("planner",)
         return Problem(loc, error.problems[0], missing=True)
