@@ -10,8 +10,6 @@ from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError, mode
 from fuzzyq_bullet.planning.commands import Answer, TwistCommand, WheelCommand
 from fuzzyq_bullet.planning.decision import FARTHEST, LONGEST_STEP, Decision, Mode
 
-PROTOCOL = 1
-
 _Number: TypeAlias = Annotated[
     float, Strict(), Field(allow_inf_nan=False, ge=-FARTHEST, le=FARTHEST)
 ]
@@ -26,12 +24,12 @@ class Robot(_Message):
     """What the robot can do; all but the radius is null in the kinematic drive."""
 
     radius: float = Field(description="Radius of the robot's disc (m).")
-    max_speed: float | None = Field(None, description="m/s")
-    max_turn_rate: float | None = Field(None, description="rad/s")
-    acceleration: float | None = Field(None, description="m/s²")
-    turn_acceleration: float | None = Field(None, description="rad/s²")
-    wheel_radius: float | None = Field(None, description="m")
-    track: float | None = Field(None, description="Distance between the wheels (m).")
+    max_speed: float | None = Field(default=None, description="m/s")
+    max_turn_rate: float | None = Field(default=None, description="rad/s")
+    acceleration: float | None = Field(default=None, description="m/s²")
+    turn_acceleration: float | None = Field(default=None, description="rad/s²")
+    wheel_radius: float | None = Field(default=None, description="m")
+    track: float | None = Field(default=None, description="Distance between the wheels (m).")
 
 
 class Goal(_Message):
@@ -44,7 +42,7 @@ class Goal(_Message):
 class Greeting(_Message):
     """The first line, sent once. It is not answered."""
 
-    protocol: Literal[1] = Field(PROTOCOL, description="Version of these messages.")
+    protocol: Literal[1] = Field(default=1, description="Version of these messages.")
     version: str = Field(description="Version of fuzzyq_bullet.")
     robot: Robot
     goal: Goal
@@ -79,22 +77,24 @@ class Explanation(_Message):
     """What the film and the page show beside the answer; none of it moves the robot."""
 
     mode: Mode = "routine"
-    aim: _Pair | None = Field(None, description="The point that it steers to (m).")
-    target: _Pair | None = Field(None, description="A temporary goal (m).")
+    aim: _Pair | None = Field(default=None, description="The point that it steers to (m).")
+    target: _Pair | None = Field(default=None, description="A temporary goal (m).")
 
 
 class Reply(_Message):
     """An answer: ``heading`` and ``step``, or ``twist``, or ``wheels``."""
 
-    heading: _Number | None = Field(None, description="World heading (rad).")
+    heading: _Number | None = Field(default=None, description="World heading (rad).")
     step: Annotated[float, Strict(), Field(allow_inf_nan=False, ge=0.0, le=LONGEST_STEP)] | None = (
-        Field(None, description="Length of the step (m); how fast follows from it.")
+        Field(default=None, description="Length of the step (m); how fast follows from it.")
     )
-    twist: _Pair | None = Field(None, description="Speed (m/s) and turn rate (rad/s).")
-    wheels: _Pair | None = Field(None, description="Speeds of left and right wheel (rad/s).")
+    twist: _Pair | None = Field(default=None, description="Speed (m/s) and turn rate (rad/s).")
+    wheels: _Pair | None = Field(
+        default=None, description="Speeds of left and right wheel (rad/s)."
+    )
     explain: Explanation = Explanation()
     hopeless: Annotated[bool, Strict()] = Field(
-        False, description="Whether it gives up: the episode ends as stuck."
+        default=False, description="Whether it gives up: the episode ends as stuck."
     )
 
     @model_validator(mode="after")
@@ -120,9 +120,9 @@ class Reply(_Message):
         if self.explain.target:
             told = told._replace(target=(self.explain.target[0], self.explain.target[1]))
         if self.twist:
-            return TwistCommand(*self.twist, told=told)
+            return TwistCommand(self.twist[0], self.twist[1], told)
         if self.wheels:
-            return WheelCommand(*self.wheels, told=told)
+            return WheelCommand(self.wheels[0], self.wheels[1], told)
         return told
 
 
@@ -152,7 +152,11 @@ def read_reply(line: str) -> Reply:
 
 def process_schema() -> dict[str, Any]:
     """Return a JSON Schema for each of the three kinds of lines."""
-    models = {"greeting": Greeting, "observation": Seen, "answer": Reply}
+    models: dict[str, type[BaseModel]] = {
+        "greeting": Greeting,
+        "observation": Seen,
+        "answer": Reply,
+    }
     return {name: model.model_json_schema() for name, model in models.items()}
 
 
