@@ -20,10 +20,13 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.errors import UserError
     from fuzzyq_bullet.metrics import Result, result_of
     from fuzzyq_bullet.planning import (
+        CommandSettings,
         Decision,
         Observation,
         Planner,
         PlannerSettings,
+        TwistCommand,
+        WheelCommand,
         register_planner,
     )
     from fuzzyq_bullet.scenario import Scenario, load_scenario, with_options
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.video.record import frame, record
 
 __all__ = [
+    "CommandSettings",
     "Decision",
     "Observation",
     "Planner",
@@ -38,7 +42,9 @@ __all__ = [
     "Result",
     "Scenario",
     "Trajectory",
+    "TwistCommand",
     "UserError",
+    "WheelCommand",
     "__version__",
     "frame",
     "load_scenario",
@@ -53,7 +59,10 @@ _HOMES = {
     "Decision": "planning",
     "Observation": "planning",
     "Planner": "planning",
+    "CommandSettings": "planning",
     "PlannerSettings": "planning",
+    "TwistCommand": "planning",
+    "WheelCommand": "planning",
     "Result": "metrics",
     "Scenario": "scenario",
     "Trajectory": "trajectory",

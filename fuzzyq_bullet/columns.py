@@ -117,6 +117,15 @@ def check_arrays(group: str, columns: Columns, arrays: Mapping[str, Any]) -> dic
     return found
 
 
+def array_of(column: Column, values: list[Any]) -> NDArray[Any]:
+    """Return what was decided as an array, a row for each value: of words, their numbers."""
+    if column.words:
+        return np.array([column.words.index(word) for word in values], dtype=column.dtype)
+    array = np.array(values, dtype=column.dtype).reshape(len(values), *column.shape)
+    # What a planner cannot put into a number is not explained; only a reach may be endless.
+    return array if column.endless else np.where(np.isinf(array), np.nan, array)
+
+
 def csv_of(columns: Columns, arrays: Mapping[str, NDArray[Any]], *, units: bool = False) -> str:
     """Return a table as CSV: a heading, then a line for every row of the arrays.
 

@@ -68,6 +68,22 @@ def refusal(
     return PlannerError(f"planner {name}: {error}, {_when(observation)}{_home(planner)}")
 
 
+@contextmanager
+def closing(planner: Planner, name: str) -> Iterator[None]:
+    """Close a planner that has a method ``close`` when its episode is over, however that ends.
+
+    Raises:
+        PlannerError: If closing it fails.
+    """
+    try:
+        yield
+    finally:
+        close = getattr(planner, "close", None)
+        if callable(close):
+            with _blamed(name, "while it was closed"):
+                close()
+
+
 def _when(observation: Observation) -> str:
     return f"after {observation.time:.2f} s"
 

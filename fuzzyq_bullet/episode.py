@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from fuzzyq_bullet.consult import ask, build_planner, refusal
+from fuzzyq_bullet.consult import ask, build_planner, closing, refusal
 from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.drives.wheels import DECISIONS_A_SECOND
@@ -17,8 +17,18 @@ from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation, Planner
+from fuzzyq_bullet.planning.commands import (
+    Answer,
+    CommandSettings,
+    TwistCommand,
+    WheelCommand,
+    equivalent,
+    twist_of,
+)
 from fuzzyq_bullet.planning.controllers import fields_of
 from fuzzyq_bullet.planning.decision import DecisionError, checked
+from fuzzyq_bullet.planning.safety_filter import safety_filter
+from fuzzyq_bullet.planning.twist_filter import twist_filter
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.models import Limits, Scenario
@@ -112,20 +122,22 @@ def run_in(
             the scenario is to be driven by wheels.
         PlannerError: If the planner raises, exits or decides what cannot be carried out.
     """
-    episode, name = Episode(world, scenario), scenario.planner.name
-    while episode.outcome is None:
-        before, observation = episode.now, episode.observe()
-        decision = ask(planner, observation, name)
-        try:
-            episode.advance(decision)
-        except DecisionError as error:
-            raise refusal(planner, observation, name, error) from error
-        if progress is not None:
-            now = episode.now
-            progress(now.time, math.dist((now.x, now.y), scenario.goal.position))
-        if observer is not None:
-            observer(before, decision, episode.now)
-    return episode.record()
+    name = scenario.planner.name
+    with closing(planner, name):
+        episode = Episode(world, scenario)
+        while episode.outcome is None:
+            before, observation = episode.now, episode.observe()
+            answer = ask(planner, observation, name)
+            try:
+                decision = episode.carry_out(answer, observation)
+            except DecisionError as error:
+                raise refusal(planner, observation, name, error) from error
+            if progress is not None:
+                now = episode.now
+                progress(now.time, math.dist((now.x, now.y), scenario.goal.position))
+            if observer is not None:
+                observer(before, decision, episode.now)
+        return episode.record()
 
 
 class Episode:
@@ -137,7 +149,7 @@ class Episode:
         patience: How long the robot may stay at one place before it counts as stuck (s); a slow
             robot may stay longer.
         rate: Decisions a second on wheels, at most 80; each must last a whole number of physics
-            steps of 1/240 s.
+            steps of 1/240 s. By default that of the scenario's planner, or 20.
 
     Raises:
         ValueError: If the world was built of other obstacles or another arena, there is nothing
@@ -153,15 +165,19 @@ class Episode:
         scenario: Scenario,
         *,
         patience: float = STUCK_TIME,
-        rate: float = DECISIONS_A_SECOND,
+        rate: float | None = None,
     ) -> None:
         if (world.obstacles, world.arena) != (scenario.obstacles, scenario.arena):
             raise ValueError(f"the world was not built for the scenario {scenario.name}")
         self._scenario = scenario
         self._fields = fields_of(scenario.planner)
         self._field = world.field
+        own = scenario.planner if isinstance(scenario.planner, CommandSettings) else None
+        self._guarded = own is not None and own.guard
+        rate = rate or (own.rate if own else DECISIONS_A_SECOND)
         self._driver = _driver(world, scenario, rate)
         self._decisions: list[tuple[int, Decision]] = []
+        self._asked: dict[int, Twist] = {}
         self._standstill = _Standstill(self.now, patience * self._driver.slowness)
         self.outcome: Outcome | None = None
 
@@ -173,6 +189,38 @@ class Episode:
     def observe(self) -> Observation:
         """Return what a planner may know now."""
         return self._driver.observe()
+
+    def carry_out(self, answer: Answer, observation: Observation) -> Decision:
+        """Carry out whatever a planner answered until the next one is due, or the episode is over.
+
+        Args:
+            answer: A decision, a twist or speeds of the wheels. The safety filter limits it if the
+                settings of the scenario's planner say so.
+            observation: What the planner saw.
+
+        Returns:
+            What went on record: of a twist, the decision that leads to the same.
+
+        Raises:
+            DecisionError: If it cannot be carried out.
+            ValueError: If the episode is over already.
+        """
+        if not isinstance(answer, TwistCommand | WheelCommand):
+            if self._guarded:
+                answer = safety_filter(checked(answer, self._fields), observation)
+            self.advance(answer)
+            return answer
+        motion = observation.motion
+        asked = limited = twist_of(answer, motion)
+        assert motion is not None  # else it was refused
+        told = equivalent(asked, observation, motion)
+        if self._guarded:
+            limited, free = twist_filter(asked, observation)
+            told = equivalent(limited, observation, motion)._replace(guard=free)
+        told = checked(told, self._fields)
+        self._asked[len(self._decisions)] = Twist(asked.speed, asked.turn_rate)
+        self.steer(Twist(limited.speed, limited.turn_rate), told)
+        return told
 
     def advance(self, decision: Decision) -> None:
         """Carry out a decision until the next one is due, or the episode is over.
@@ -236,6 +284,7 @@ class Episode:
             outcome=outcome,
             physics_steps=driver.steps,
             collision=driver.collision,
+            twists=self._asked,
         )
 
     def _note(self, decision: Decision) -> Decision:

@@ -9,7 +9,7 @@ import hashlib
 import io
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, make_dataclass
+from dataclasses import dataclass, field, make_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
@@ -17,17 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field, ValidationError
 
-from fuzzyq_bullet.columns import (
-    Column,
-    Columns,
-    check_arrays,
-    columns_of,
-    csv_of,
-    documented,
-)
+from fuzzyq_bullet.columns import Column, Columns, array_of, check_arrays, columns_of, csv_of
+from fuzzyq_bullet.columns import documented as with_columns
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.geometry import Field as Obstacles
+from fuzzyq_bullet.planning.commands import COMMAND_FIELDS, command_arrays
 from fuzzyq_bullet.planning.controllers import fields_of, fields_with
 from fuzzyq_bullet.planning.decision import FIELDS, Decision
 from fuzzyq_bullet.planning.registry import planner_names
@@ -78,7 +73,7 @@ DECISIONS = {
     **FIELDS,
 }
 """All columns of a record: a row of ``TICKS`` for each tick, of ``DECISIONS`` for each decision."""
-Ticks.__doc__ = documented(Ticks.__doc__, TICKS)
+Ticks.__doc__ = with_columns(Ticks.__doc__, TICKS)
 _DECISIONS_DOC = "Every decision of the planner, with all that explains it: D rows in each array."
 
 if TYPE_CHECKING:
@@ -92,10 +87,13 @@ if TYPE_CHECKING:
 else:
     Decisions = make_dataclass(
         "Decisions",
-        [(name, NDArray) for name in DECISIONS],
+        [
+            *((name, NDArray) for name in DECISIONS),
+            *((name, NDArray | None, field(default=None)) for name in COMMAND_FIELDS),
+        ],
         frozen=True,
         eq=False,
-        namespace={"__module__": __name__, "__doc__": documented(_DECISIONS_DOC, DECISIONS)},
+        namespace={"__module__": __name__, "__doc__": with_columns(_DECISIONS_DOC, DECISIONS)},
     )
 
 
@@ -144,25 +142,27 @@ class Trajectory:
     def from_episode(
         cls,
         scenario: Scenario,
-        field: Obstacles,
+        obstacles: Obstacles,
         states: Sequence[Sequence[float]],
         decisions: Sequence[tuple[int, Decision]],
         *,
         outcome: Outcome,
         physics_steps: int,
         collision: Collision | None,
+        twists: Mapping[int, tuple[float, float]] | None = None,
     ) -> Trajectory:
         """Return the record of an episode.
 
         Args:
             scenario: The scenario as it ran, every obstacle listed.
-            field: Its obstacles and walls.
+            obstacles: Its obstacles and walls.
             states: The robot at every tick: time, x, y, heading, speed, turn rate and the speeds of
                 the left and right wheel.
             decisions: Each decision with the index of the tick it was taken at.
             outcome: How the episode ended.
             physics_steps: Steps of the simulation.
             collision: The contact that ended it, if one did.
+            twists: What the planner asked for instead, by the number of the decision.
         """
         at = np.array(states, dtype=np.float64)
         return cls(
@@ -177,14 +177,15 @@ class Trajectory:
                 speed=at[:, 4],
                 turn_rate=at[:, 5],
                 wheel_speeds=at[:, 6:8],
-                clearance=_clearance(field, at[:, 1:3], scenario.drive) - scenario.robot.radius,
+                clearance=_clearance(obstacles, at[:, 1:3], scenario.drive) - scenario.robot.radius,
             ),
             decisions=Decisions(
                 tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
                 **{
-                    name: _array(column, [getattr(decision, name) for _, decision in decisions])
+                    name: array_of(column, [getattr(decision, name) for _, decision in decisions])
                     for name, column in fields_of(scenario.planner).items()
                 },
+                **command_arrays(twists or {}, len(decisions)),
             ),
             version=__version__,
         )
@@ -304,6 +305,7 @@ class Trajectory:
             f"{group}.{name}": array
             for group in ("ticks", "decisions")
             for name, array in vars(getattr(self, group)).items()
+            if array is not None  # what no planner but those that answer with twists has
         }
 
 
@@ -312,12 +314,15 @@ def _columns_in(planner: PlannerSettings, arrays: Mapping[str, Any]) -> Columns:
 
     Of one that is not registered here nothing is known; its labels are numbers then.
     """
+    more = {
+        name: column for name, column in COMMAND_FIELDS.items() if f"decisions.{name}" in arrays
+    }
     rules = arrays.get("decisions.rules")
     known = planner.name in planner_names()
     if known or rules is None or rules.ndim != 3 or rules.shape[1:] == DECISIONS["rules"].shape:
-        return {"tick": DECISIONS["tick"], **fields_of(planner)}
+        return {"tick": DECISIONS["tick"], **fields_of(planner), **more}
     near, side = (list(map(str, range(1, size + 1))) for size in rules.shape[1:])
-    return {"tick": DECISIONS["tick"], **fields_with(near, side)}
+    return {"tick": DECISIONS["tick"], **fields_with(near, side), **more}
 
 
 class _Head(BaseModel):
@@ -338,12 +343,3 @@ def _clearance(field: Obstacles, positions: Floats, drive: str) -> Floats:
     if drive == "kinematic":
         return field.clearance_along(positions[[0, *range(len(positions) - 1)]], positions)[0]
     return field.clearance(positions)
-
-
-def _array(column: Column, values: list[Any]) -> NDArray[Any]:
-    """Return what was decided as an array: of words, their numbers."""
-    if column.words:
-        return np.array([column.words.index(word) for word in values], dtype=column.dtype)
-    array = np.array(values, dtype=column.dtype).reshape(len(values), *column.shape)
-    # What a planner cannot put into a number is not explained; only a reach may be endless.
-    return array if column.endless else np.where(np.isinf(array), np.nan, array)

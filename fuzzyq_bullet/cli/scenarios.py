@@ -11,6 +11,11 @@ import typer
 from fuzzyq_bullet.cli.options import FILE, Json, PluginOption
 from fuzzyq_bullet.errors import UserError
 
+ProcessOption = Annotated[
+    bool,
+    typer.Option("--process", help="Of what the planner process and its program say, instead."),
+]
+
 
 def validate(
     files: Annotated[
@@ -133,9 +138,15 @@ def schema(
     markdown: Annotated[
         bool, typer.Option("--markdown", help="As a page that explains every key instead.")
     ] = False,
+    process: ProcessOption = False,
     plugin: PluginOption = None,
 ) -> None:
     """Print the JSON Schema of scenario files, with what plugins add to them."""
+    if process:
+        from fuzzyq_bullet.planning.process_messages import process_schema
+
+        typer.echo(dumps(process_schema(), indent=2))
+        return
     from fuzzyq_bullet.scenario import scenario_schema
     from fuzzyq_bullet.scenario.reference import scenario_reference
 

@@ -63,6 +63,8 @@ class WheelsDriver(Driver):
             period=self._decision_ticks * tick_time,
             radius=limits.radius,
             margin=SENSOR_MARGIN,
+            wheel_radius=limits.spec.wheel_radius,
+            track=limits.spec.track,
         )
         super().__init__(world, scenario, motion)
         self._world = world

@@ -1,11 +1,13 @@
 """Planners: an observation in, a decision out; they know nothing of PyBullet or files."""
 
 from fuzzyq_bullet.planning.base import Motion, Observation, Planner, RangeSensor
+from fuzzyq_bullet.planning.commands import Answer, CommandSettings, TwistCommand, WheelCommand
 from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
 from fuzzyq_bullet.planning.policies import policy_of
+from fuzzyq_bullet.planning.process import ProcessPlanner, ProcessSettings
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS, DirectPlanner
 from fuzzyq_bullet.planning.registry import (
     DEFAULT_PLANNER,
@@ -27,6 +29,8 @@ from fuzzyq_bullet.planning.settings import (
 __all__ = [
     "DEFAULT_PLANNER",
     "MODES",
+    "Answer",
+    "CommandSettings",
     "Decision",
     "DirectPlanner",
     "FuzzyPlanner",
@@ -40,10 +44,14 @@ __all__ = [
     "Observation",
     "Planner",
     "PlannerSettings",
+    "ProcessPlanner",
+    "ProcessSettings",
     "QLambdaSettings",
     "QLearningSettings",
     "RangeSensor",
     "RoutineSettings",
+    "TwistCommand",
+    "WheelCommand",
     "make_planner",
     "planner_names",
     "register_planner",
@@ -69,3 +77,4 @@ register_planner(
     FuzzyQLambdaSettings,
     lambda settings, rng: FuzzyQLambdaPlanner(settings),
 )
+register_planner("process", ProcessSettings, ProcessPlanner)

@@ -6,12 +6,15 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from numbers import Real
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.planning.decision import Decision, Numbers
+from fuzzyq_bullet.planning.decision import Numbers
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.planning.commands import Answer
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -45,6 +48,8 @@ class Motion:
         period: Time between two decisions (s).
         radius: Radius of the robot's disc (m).
         margin: How much wider than the disc a detection line is, on either side (m).
+        wheel_radius: Radius of the two wheels (m).
+        track: Distance between them (m).
     """
 
     max_speed: float
@@ -54,6 +59,8 @@ class Motion:
     period: float
     radius: float
     margin: float
+    wheel_radius: float = 0.05
+    track: float = 0.28
 
     def way_to_stop(self, speed: float) -> float:
         """Return the way (m) from full braking at ``speed`` (m/s) to a stop."""
@@ -209,11 +216,12 @@ class Observation:
 
 
 class Planner(Protocol):
-    """A local planner: one observation in, one decision out.
+    """A local planner: one observation in, one answer out.
 
-    A planner lives for one episode and may keep a memory within it.
+    A planner lives for one episode and may keep a memory within it. If it has a method ``close``,
+    that is called when the episode is over.
     """
 
-    def decide(self, observation: Observation, /) -> Decision:
-        """Choose the next heading and step."""
+    def decide(self, observation: Observation, /) -> Answer:
+        """Choose the next heading and step, or a twist, or speeds of the wheels."""
         ...

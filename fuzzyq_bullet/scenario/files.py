@@ -15,6 +15,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_text, written_beside
 from fuzzyq_bullet.planning.controllers import rules_named
 from fuzzyq_bullet.planning.fuzzy_q_lambda import field_policy
+from fuzzyq_bullet.planning.process import ProcessSettings
 from fuzzyq_bullet.planning.registry import (
     DEFAULT_PLANNER,
     make_planner,
@@ -153,7 +154,7 @@ def _with_rules_in(tree: Node, folder: Path, where: str) -> dict[str, Any]:
 
 
 def _with_policy_in(scenario: Scenario, folder: Path) -> Scenario:
-    """Return the scenario with the path of its policy made absolute, if it names one.
+    """Return the scenario with the paths of its policy or program made absolute, if it names one.
 
     So it means the same file wherever the scenario is written to, or run from, later on.
 
@@ -162,6 +163,13 @@ def _with_policy_in(scenario: Scenario, folder: Path) -> Scenario:
         folder: Folder of that file, in which a relative path begins.
     """
     planner = scenario.planner
+    if isinstance(planner, ProcessSettings):
+        command = tuple(
+            str((folder / word).absolute()) if word.startswith(("./", "../")) else word
+            for word in planner.command
+        )
+        planner = planner.model_copy(update={"command": command})
+        return scenario.model_copy(update={"planner": planner})
     if not isinstance(planner, PolicySettings) or planner.policy is None:
         return scenario
     path = str((folder / planner.policy).absolute())
@@ -176,14 +184,20 @@ def _policy_problem(scenario: Scenario, *, planner_is_given: bool, sound: bool) 
         planner_is_given: Whether the file has a key ``planner`` at all.
         sound: Whether all else is right, so that its obstacles can be drawn.
     """
-    if not isinstance(scenario.planner, PolicySettings):
+    if not isinstance(scenario.planner, PolicySettings | ProcessSettings):
         return None
     try:
         # The planner itself knows best what fits it. What it would draw from is of no matter.
         make_planner(scenario.planner, np.random.default_rng(0))
-        if sound and field_policy(scenario.planner) is not None:
+        if isinstance(scenario.planner, PolicySettings) and (
+            sound and field_policy(scenario.planner) is not None
+        ):
             refuse_other_field(realise(scenario))
     except UserError as error:
+        if isinstance(scenario.planner, ProcessSettings):
+            if not scenario.planner.command:
+                return Problem(("planner",), error.problems[0])
+            return Problem(("planner", "command"), error.problems[0].removeprefix("command: "))
         loc = ("planner", "policy") if planner_is_given else ("planner",)
         return Problem(loc, error.problems[0], missing=True)
     return None

@@ -60,9 +60,10 @@ class _Loop:
         episode = Episode(self.world, self.scenario, rate=self.rate)
         while episode.outcome is None:
             start = time.perf_counter()
-            decision = planner.decide(episode.observe())
+            observation = episode.observe()
+            answer = planner.decide(observation)
             self.decisions.append(time.perf_counter() - start)
-            episode.advance(decision)
+            episode.carry_out(answer, observation)
         return episode
 
     def bare(self) -> tuple[Callable[[], object], float]:
