@@ -139,8 +139,8 @@ def with_rules(settings: PlannerSettings, rules: str | None) -> PlannerSettings:
 
     Args:
         settings: The planner's.
-        rules: A file, or one of ``RULE_WORDS``; ``json:…``, if a study tells it from its folder. None
-            leaves the settings as they are.
+        rules: A file, or one of ``RULE_WORDS``; ``json:…``, if a study tells it from its
+            folder. None leaves the settings as they are.
 
     Raises:
         UserError: If the rules are wrong, or the planner has a policy that does not fit them.
