@@ -15,6 +15,8 @@ from fuzzyq_bullet.errors import UserError
 FPS = 30
 ANIMATION_FPS = 10
 """Frames a second of an animated picture: a third of a film's, as it is many times as large."""
+USUAL_SIZE, ANIMATION_SIZE = (1280, 720), (640, 360)
+"""Width and height (pixels) of a film and of an animated picture; panels of one's own add rows."""
 MOST_FPS, MOST_ANIMATION_FPS = 120, 50
 SLOWEST, FASTEST = 0.1, 100.0
 """Playback speeds of a video."""

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.filming import EXPLAIN, VIEWS, Filming
+from fuzzyq_bullet.filming import ANIMATION_SIZE, EXPLAIN, USUAL_SIZE, VIEWS, Filming
 from fuzzyq_bullet.planning.settings import PolicySettings
 from fuzzyq_bullet.scenario import Scenario, find_scenario
 from fuzzyq_bullet.trajectory import Trajectory
@@ -54,8 +54,8 @@ def film_name(
     parts = [name]
     if film.view != EXPLAIN:
         parts.append(film.view)
-    if film.size is not None:
-        parts.append(f"{film.size[0]}x{film.size[1]}")
+    if film.size not in (None, USUAL_SIZE if form == "mp4" else ANIMATION_SIZE):
+        parts.append("x".join(map(str, film.size)))
     if film.fps is not None:
         parts.append(f"{film.fps}fps")
     if f"{film.speed:g}" != "1":

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +11,22 @@ from fuzzyq_bullet.columns import FAR
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.scenario.models import Scenario
-    from fuzzyq_bullet.trajectory import Collision
 
 LONGEST = 7200.0
 """Longest run that is read (s): twice the greatest limit of a scenario."""
+
+
+class _Contact(Protocol):
+    """What is checked of a collision; see ``Collision``."""
+
+    @property
+    def time(self) -> float: ...
+    @property
+    def point(self) -> tuple[float, float]: ...
+    @property
+    def obstacle(self) -> int: ...
+    @property
+    def normal_force(self) -> float: ...
 
 
 def check_order(time: NDArray[np.float64], tick: NDArray[np.int64]) -> None:
@@ -36,7 +48,7 @@ def check_order(time: NDArray[np.float64], tick: NDArray[np.int64]) -> None:
         raise ValueError(f"decisions.tick does not run upwards within 0 to {last}")
 
 
-def check_collision(collision: Collision, scenario: Scenario) -> None:
+def check_collision(collision: _Contact, scenario: Scenario) -> None:
     """Check what every reader of a collision relies on.
 
     Raises:

@@ -31,6 +31,7 @@ app = typer.Typer(
     epilog="Exit codes: 0 all well; 1 it ran and the verdict is bad; 2 the input is wrong; "
     "130 interrupted (143 by SIGTERM).",
     add_completion=False,
+    rich_markup_mode="markdown",  # the lines of a paragraph flow
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},

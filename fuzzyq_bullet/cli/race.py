@@ -146,7 +146,11 @@ def _of_scenario(
     from fuzzyq_bullet.scenario import load_scenario, realise
 
     given = load_scenario(scenario, policies=False)  # the planners have their own
-    asked = [asked_for(given, planner=name, seed=seed, drive=drive) for name in planners]
+    try:
+        asked = [asked_for(given, planner=name, seed=seed, drive=drive) for name in planners]
+    except UserError as error:  # a race has one option for all of them
+        said = (f"{one}".replace("--planner:", "--planners:", 1) for one in error.problems)
+        raise UserError(*said) from error
     tasks = [realise(one) for one in asked]
     base = run_name(given, asked_for(given, planner=None, seed=seed, drive=drive))
     (video,) = writable_files(out, [film.name(f"{base}-race-{'-vs-'.join(planners)}")])

@@ -84,9 +84,10 @@ def figure(
             raise UserError(f"POLICY: figure {name} shows nothing that was learned")
         if planner is not None and number not in OF_RUNS:
             raise UserError(f"--planner: figure {name} shows no run that a planner could drive")
+        variant = planner if rules is None else Path(rules).stem
         target, draw = (
-            out / file_name(f"figure{name}", planner),
-            drawing(number, planner, definition),
+            out / file_name(f"figure{name}", variant),
+            drawing(number, planner, definition, variant),
         )
     refuse_inputs(
         [target], [*given, *([] if rules is None else [Path(rules)]), *plugin_inputs(plugin or [])]

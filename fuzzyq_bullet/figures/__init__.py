@@ -46,7 +46,10 @@ def file_name(name: str, planner: str | None = None) -> str:
 
 
 def drawing(
-    number: int, planner: str | None = None, rules: ControllerDefinition | None = None
+    number: int,
+    planner: str | None = None,
+    rules: ControllerDefinition | None = None,
+    variant: str | None = None,
 ) -> Draw:
     """Return the function that draws a figure; only now is its module imported.
 
@@ -54,6 +57,7 @@ def drawing(
         number: Of the figure.
         planner: Planner that drives instead; only for those ``OF_RUNS``.
         rules: Controller to show instead of the paper's; only for figure 4.
+        variant: What its file is called beside its number; only for figure 4.
 
     Raises:
         KeyError: If no figure has this number.
@@ -61,7 +65,7 @@ def drawing(
     if number == 4:
         from fuzzyq_bullet.figures import figure4
 
-        return partial(figure4.draw, rules=rules)
+        return partial(figure4.draw, rules=rules, name=file_name("figure4", variant))
     from fuzzyq_bullet.figures import runs
 
     return partial(runs.FIGURES[number].draw, planner=planner)

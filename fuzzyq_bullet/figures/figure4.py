@@ -19,17 +19,20 @@ POINTS = 61
 """Points along each input: enough for a smooth surface, few enough to draw at once."""
 
 
-def draw(out: Path, rules: ControllerDefinition | None = None) -> list[Path]:
-    """Draw both surfaces side by side into ``out/figure4.png``.
+def draw(
+    out: Path, rules: ControllerDefinition | None = None, name: str = "figure4.png"
+) -> list[Path]:
+    """Draw both surfaces side by side into one file.
 
     Args:
         out: Folder.
         rules: Whose surfaces; by default those of the paper's controller.
+        name: What the file is called.
 
     Raises:
         UserError: If the file cannot be written.
     """
-    path = writable_folder(out) / "figure4.png"
+    path = writable_folder(out) / name
     save_png(
         picture(paper_controller() if rules is None else rules.controller()),
         path,

@@ -1,15 +1,14 @@
-"""A fixed camera: what it sees of solid things once, and of the moving robot in every frame.
+"""A fixed camera: where it sees what, and what it sees of the moving robot.
 
-TinyRenderer needs a few hundred milliseconds for a whole picture. So the still world is rendered
-once, with its depth, and the robot alone, in the small rectangle of the picture that it covers;
-the two depths tell which of them is in front. The cost of a frame does not depend on the world.
+The still world is drawn once, with its depth (``video/still.py``), and the robot alone in every
+frame, in the small rectangle of the picture that it covers; the two depths tell which of them is in
+front. The cost of a frame does not depend on the world.
 """
 
 from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, TypeAlias
@@ -29,8 +28,6 @@ NOTHING = -1
 """What a picture's mask holds where nothing is seen."""
 MAX_SIZE = 8192
 """Most pixels along a side of a picture; absurd sizes would kill the process."""
-_MOST_PIXELS = 4_000_000
-"""Pixels taken at a time: PyBullet needs some 100 bytes for each."""
 
 _AROUND = np.arange(16) * (math.tau / 16)
 _RIM, _LID = 0.004, 0.007
@@ -183,30 +180,12 @@ class Lens:
         return self.size[1] / 2 / math.tan(self.field_of_view / 2)
 
 
-def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Picture:
-    """Return the whole picture of solid things; its mask holds indices into ``meshes``.
-
-    Args:
-        meshes: What to see.
-        lens: The camera.
-        oversampling: How many times larger than the lens's size the picture is made.
-
-    Raises:
-        ValueError: If the picture would be empty or absurdly large.
-    """
-    with Engine() as engine:
-        owner = [add_mesh(engine, mesh) for mesh in meshes]
-        width, height = lens.size
-        rows = max(_MOST_PIXELS // (width * oversampling**2), 1)
-        strips = [
-            shoot(engine, lens, (0, top, width, min(top + rows, height)), oversampling)
-            for top in range(0, height, rows)
-        ]
-    picture = Picture(*(np.concatenate(parts) for parts in zip(*strips, strict=True)))
-    lookup = np.full(max(owner, default=0) + 2, NOTHING, dtype=np.int32)
-    for index, body in enumerate(owner):
-        lookup[body] = index
-    return picture._replace(mask=lookup[picture.mask])  # −1 finds the last entry: NOTHING
+def lit(mesh: Mesh) -> NDArray[np.uint8]:
+    """Return the colour of a surface at each corner as the robot's light shows it, shape (V, 3)."""
+    towards = np.asarray(_LIGHT["lightDirection"]) / np.linalg.norm(_LIGHT["lightDirection"])
+    shine = np.maximum(mesh.normals @ towards, 0.0) * _LIGHT["lightDiffuseCoeff"]
+    light = _LIGHT["lightAmbientCoeff"] + shine
+    return np.minimum(np.outer(light, mesh.colour), 255.0).astype(np.uint8)
 
 
 class RobotCamera:

@@ -31,6 +31,8 @@ from fuzzyq_bullet.scenario import MAX_OBSTACLES, Drive
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 NONE = "none"
+_TOLD = "json:"
+"""What rules begin with that are no file, but what a plan holds of one."""
 RULES_HELP = "Rules of your own for the planners that have some: a file (docs/rules.md)."
 PAPER = ("fuzzy", "improved-fuzzy", "q-learning", "q-lambda", "fuzzy-q-lambda")
 """The planners of Fig. 13 and Table 5, in the order in which they are shown."""
@@ -137,8 +139,8 @@ def with_rules(settings: PlannerSettings, rules: str | None) -> PlannerSettings:
 
     Args:
         settings: The planner's.
-        rules: A file, or one of ``RULE_WORDS``; JSON, if a study tells it from its folder. None
-            leaves the settings as they are.
+        rules: A file, or one of ``RULE_WORDS``; ``json:…``, if a study tells it from its
+            folder. None leaves the settings as they are.
 
     Raises:
         UserError: If the rules are wrong, or the planner has a policy that does not fit them.
@@ -146,7 +148,9 @@ def with_rules(settings: PlannerSettings, rules: str | None) -> PlannerSettings:
     if rules is None or "rules" not in type(settings).model_fields:
         return settings
     try:
-        found = json.loads(rules) if rules.startswith('{"') else rules_named(rules)
+        found = (
+            json.loads(rules.removeprefix(_TOLD)) if rules.startswith(_TOLD) else rules_named(rules)
+        )
         given = type(settings).model_validate({**settings.model_dump(), "rules": found})
         if isinstance(given, FuzzyQLambdaSettings):
             rule_policy(given)
@@ -161,7 +165,7 @@ def rules_told(settings: Mapping[str, Any]) -> str | None:
     """Return the rules of a planner, as a study's plan tells it, as ``with_rules`` takes them."""
     rules = settings.get("rules")
     usual = rules is None or rules == RoutineSettings.model_fields["rules"].default
-    return None if usual else rules if isinstance(rules, str) else json.dumps(rules)
+    return None if usual else rules if isinstance(rules, str) else _TOLD + json.dumps(rules)
 
 
 def planners_of(names: str | Iterable[str], rules: str | None = None) -> dict[str, PlannerSettings]:

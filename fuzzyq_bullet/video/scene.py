@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image, ImageChops, ImageDraw
 
-from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera, photograph
+from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera
 from fuzzyq_bullet.video import meshes, paint, style
 from fuzzyq_bullet.video.cameras import Camera, FixedCamera
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.shots import SPAN, Shot
+from fuzzyq_bullet.video.still import photograph
 from fuzzyq_bullet.video.style import SCENE, Rect
 from fuzzyq_bullet.video.timeline import Sensed, Steady
 from fuzzyq_bullet.video.trail import Trail

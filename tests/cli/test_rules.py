@@ -271,8 +271,8 @@ def test_figure_4_shows_the_surface_of_ones_own_rules(
     for out, rules in (("own", [path]), ("paper", [])):
         more = ["--rules", *rules] if rules else []
         assert inside("figure", 4, "--out", tmp_path / out, *more).returncode == 0
-    own, paper = ((tmp_path / out / "figure4.png").read_bytes() for out in ("own", "paper"))
-    assert own != paper
+    own, paper = tmp_path / "own" / "figure4-three.png", tmp_path / "paper" / "figure4.png"
+    assert own.read_bytes() != paper.read_bytes()
     with pytest.raises(UserError, match="--rules: figure '9' shows no controller"):
         inside("figure", 9, "--rules", path, "--out", tmp_path)
 

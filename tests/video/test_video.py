@@ -14,11 +14,11 @@ from PIL import Image
 
 import fuzzyq_bullet
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.physics.camera import photograph
 from fuzzyq_bullet.video import encoders as encoder_module
 from fuzzyq_bullet.video import frame, record, scene, style
 from fuzzyq_bullet.video.encoders import Encoder, FrameBuffer
 from fuzzyq_bullet.video.paint import DirtyRegion
+from fuzzyq_bullet.video.still import photograph
 from tests.helpers.synthetic import drive, scenario, standing
 
 if TYPE_CHECKING:

@@ -47,7 +47,8 @@ class Action:
         card = canvas.image
         card.paste(style.LINE, mask=paint.mask((0, 0, *ACTION.size), _dial_face))
         paint.write(card, (14, 199), "step", style.MUTED, 17)
-        names = ("speed", "to the goal", "nearest thing", "" if self._weighted else "known free")
+        last = "" if self._weighted else "known free"
+        names = ("speed", "distance to goal", "nearest thing", last)
         for row, name in enumerate(names):
             paint.write(card, (_FACTS, 40 + _ROW * row), name, style.MUTED, 16)
         if self._weighted:
