@@ -11,23 +11,18 @@ from fuzzyq_bullet.robots.base import (
     robot_model,
     robot_names,
 )
-from fuzzyq_bullet.robots.create3 import CREATE3
-from fuzzyq_bullet.robots.fuzzyq import FUZZYQ  # the first: it is the default
-from fuzzyq_bullet.robots.husky import HUSKY
-from fuzzyq_bullet.robots.jackal import JACKAL
-from fuzzyq_bullet.robots.turtlebot3_burger import TURTLEBOT3_BURGER
-from fuzzyq_bullet.robots.turtlebot3_waffle import TURTLEBOT3_WAFFLE
 
-__all__ = [
-    "CREATE3",
-    "FUZZYQ",
-    "HUSKY",
-    "JACKAL",
-    "TURTLEBOT3_BURGER",
-    "TURTLEBOT3_WAFFLE",
-    "RobotModel",
-    "no_robot",
-    "register_robot",
-    "robot_model",
-    "robot_names",
-]
+# isort: off
+from fuzzyq_bullet.robots import (  # noqa: F401 - in the order in which they are listed, the default first
+    fuzzyq,
+    turtlebot3_burger,
+    turtlebot3_waffle,
+    create3,
+    jackal,
+    husky,
+)
+# isort: on
+
+FUZZYQ = fuzzyq.FUZZYQ
+
+__all__ = ["FUZZYQ", "RobotModel", "no_robot", "register_robot", "robot_model", "robot_names"]

@@ -14,9 +14,9 @@ from fuzzyq_bullet.robots.made_urdf import GROUND_CLEARANCE, made_urdf
 from fuzzyq_bullet.wording import not_one_of
 
 MaxSpeed: TypeAlias = Annotated[Number, Field(ge=0.05, le=3.0)]
-MaxTurnRate: TypeAlias = Annotated[Number, Field(ge=0.2, le=6.0)]
-Acceleration: TypeAlias = Annotated[Number, Field(ge=0.1, le=5.0)]
-TurnAcceleration: TypeAlias = Annotated[Number, Field(ge=0.5, le=20.0)]
+MaxTurnRate: TypeAlias = Annotated[Number, Field(ge=0.2, le=4.0)]
+Acceleration: TypeAlias = Annotated[Number, Field(ge=0.1, le=2.0)]
+TurnAcceleration: TypeAlias = Annotated[Number, Field(ge=0.5, le=10.0)]
 Radius: TypeAlias = Annotated[Number, Field(ge=0.05, le=2.0)]
 Positive: TypeAlias = Annotated[Number, Field(gt=0.0, le=1000.0)]
 
@@ -51,6 +51,8 @@ class RobotModel(Model):
         urdf_file: A URDF whose base frame lies on the ground between the wheels, x forward; by
             default it is made from the numbers above.
         axles: The driven joints of that URDF, left and right.
+        gripping: Links of a user's URDF that get a tyre's friction, as it says nothing of it.
+        slippery: Links of a user's URDF that get no friction, as it says nothing of it.
         source: Where the numbers are from.
     """
 
@@ -71,6 +73,8 @@ class RobotModel(Model):
     turn_acceleration: TurnAcceleration = 6.0
     urdf_file: Path | None = None
     axles: tuple[str, str] = ("left_axle", "right_axle")
+    gripping: tuple[str, ...] = ()
+    slippery: tuple[str, ...] = ()
     source: str = ""
 
     @model_validator(mode="before")
@@ -80,7 +84,8 @@ class RobotModel(Model):
             return data
         points = data.get("corners", ())
         if data.get("size") is not None:
-            points = rectangle(*data["size"], data.get("offset", 0.0))
+            length, width = data["size"]
+            points = rectangle(length, width, data.get("offset", 0.0))
         return {**data, "radius": max(math.hypot(*p) for p in points)} if points else data
 
     @property

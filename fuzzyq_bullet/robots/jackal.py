@@ -16,8 +16,8 @@ JACKAL = register_robot(
         motor_torque=15.0,
         max_speed=2.0,
         max_turn_rate=4.0,
-        acceleration=3.0,
-        turn_acceleration=10.0,
+        acceleration=2.0,
+        turn_acceleration=6.0,
         source="Jackal user manual, Technical Specifications; jackal_description",
     )
 )
