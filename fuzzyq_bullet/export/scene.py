@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
 from foxglove.messages import (
     Color,
     CylinderPrimitive,

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED
 from fuzzyq_bullet.planning.decision import MODES
+from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video.footprints import arrow

@@ -10,6 +10,7 @@ from fuzzyq_bullet.scenario import parse_scenario
 
 ROOT = Path(__file__).resolve().parents[2]
 CART = (ROOT / "examples" / "robots" / "cart.urdf").read_text()
+CASTER = '<link name="caster">'
 LEFT = '<origin xyz="0 0.14 0.06"/>\n    <axis xyz="0 1 0"/>'
 
 
@@ -35,17 +36,19 @@ WRONG = {
     "negative inertia": (swapped('ixx="0.03"', 'ixx="-0.03"'), "ixx must be greater than 0"),
     "impossible inertia": (swapped('izz="0.06"', 'izz="9"'), "no body has this inertia"),
     "friction": (
-        swapped('<link name="caster">', '<link name="caster"><contact><lateral_friction value="-1"/>'
-                "</contact>"),
+        swapped(CASTER, f'{CASTER}<contact><lateral_friction value="-1"/></contact>'),
         "lateral_friction must be between 0 and 10",
     ),
     "no wheels": (swapped("wheel_joint", "motor"), "no joint for the left wheel; name it"),
     "a fixed wheel": (swapped('"continuous"', '"fixed"', 1), "its type must be continuous"),
-    "a third joint that moves": (swapped('"fixed"', '"continuous"'), "only the two wheels may move"),
+    "a third joint that moves": (swapped('"fixed"', '"continuous"'), "only the two wheels may"),
     "axis forward": (swapped(LEFT, LEFT.replace("0 1 0", "1 0 0")), "0 1 0 in the base frame"),
     "axis the other way": (swapped(LEFT, LEFT.replace("0 1 0", "0 -1 0")), "both the same way"),
     "lopsided": (swapped(LEFT, LEFT.replace("0.14", "0.10")), "must lie opposite each other"),
-    "swapped sides": (swapped('"0 0.14', '"0 +0.14').replace('"0 -0.14', '"0 0.14').replace("+", "-"), "must be on the left"),
+    "swapped sides": (
+        swapped('"0 0.14', '"0 +0.14').replace('"0 -0.14', '"0 0.14').replace("+", "-"),
+        "must be on the left",
+    ),
     "base frame not between": (swapped('"0 0.14', '"0.1 0.14').replace('"0 -0.14', '"0.1 -0.14'),
                                "must lie between the wheels"),
     "wheels in the air": (swapped("0.14 0.06", "0.14 0.09"), "it must stand on the ground"),
