@@ -6,12 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fuzzyq_bullet import run
 from fuzzyq_bullet.drives.velocity_controller import STILL, Twist, limit_acceleration
 from fuzzyq_bullet.drives.wheels import COMMAND_STEPS
 from fuzzyq_bullet.physics.engine import TIME_STEP
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.robots import FUZZYQ, robot_model, robot_names
-from fuzzyq_bullet.scenario import Arena, Robot, load_scenario
+from fuzzyq_bullet.scenario import Arena, Robot, load_scenario, parse_scenario
 from fuzzyq_bullet.shapes.box import Box
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -96,3 +97,20 @@ def test_a_urdf_is_measured():
 
 def test_a_urdf_lies_beside_its_scenario():
     assert load_scenario(CART.with_suffix(".yaml")).robot.model == str(CART)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(
+    ("robot", "side"), [("{model: jackal}", 24.0), ("{max_speed: 3.0, acceleration: 2.0}", 16.0)]
+)
+def test_no_fast_robot_touches_anything_in_a_random_field(robot, side, seed):
+    far = side - 1.5
+    scenario = parse_scenario(
+        f"name: fast\nseed: {seed}\narena: {{size: [{side}, {side}], walls: true}}\n"
+        f"start: {{position: [1.5, 1.5]}}\ngoal: {{position: [{far}, {far}], radius: 0.5}}\n"
+        f"robot: {robot}\nrandom: {{count: 20, radius: 0.3}}\nlimits: {{time: 60.0}}\n"
+    )
+    trajectory = run(scenario)
+    assert trajectory.collision is None
+    assert trajectory.ticks.speed.max() > 0.8 * scenario.robot.max_speed
