@@ -15,6 +15,7 @@ from fuzzyq_bullet.robots.urdf_file import Element, Reader
 
 _MAX_MESH = 20_000_000
 _SIDES = 32
+_LIGHTEST = 1e-4
 _LONGEST = 5.0
 """Longest side of any shape (m)."""
 
@@ -85,12 +86,17 @@ def _mass(reader: Reader, link: Element, name: str) -> float:
     if mass is None or inertia is None:
         raise reader.error(inertial, f"link {name!r} needs both a <mass> and an <inertia>")
     [kilograms] = reader.positive(mass, "value")
+    if kilograms < _LIGHTEST:
+        raise reader.error(mass, f"link {name!r} weighs less than {_LIGHTEST:g} kg")
     moments = [reader.positive(inertia, key)[0] for key in ("ixx", "iyy", "izz")]
     mixed = [reader.numbers(inertia, key, 1, "0")[0] for key in ("ixy", "ixz", "iyz")]
     (a, b, c), (ab, ac, bc) = moments, mixed
     principal = np.linalg.eigvalsh([[a, ab, ac], [ab, b, bc], [ac, bc, c]])
     if principal[0] <= 0.0 or principal[2] > 1.01 * (principal[0] + principal[1]):
         why = "no body has this inertia: each principal moment is at most the sum of the others"
+        raise reader.error(inertia, why)
+    if principal[2] > kilograms * _LONGEST**2:
+        why = f"too large for {kilograms:g} kg within {_LONGEST:g} m; are the units kg m²?"
         raise reader.error(inertia, why)
     return kilograms
 

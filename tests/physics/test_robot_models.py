@@ -102,9 +102,13 @@ def test_a_urdf_lies_beside_its_scenario():
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize(
-    ("robot", "side"), [("{model: jackal}", 24.0), ("{max_speed: 3.0, acceleration: 2.0}", 16.0)]
+    ("robot", "side", "reached"),
+    [  # a robot drives no faster than it could stop within the 1 m that the default one senses
+        ("{model: jackal}", 24.0, 1.6),
+        ("{max_speed: 3.0, acceleration: 2.0}", 16.0, 1.8),
+    ],
 )
-def test_no_fast_robot_touches_anything_in_a_random_field(robot, side, seed):
+def test_no_fast_robot_touches_anything_in_a_random_field(robot, side, reached, seed):
     far = side - 1.5
     scenario = parse_scenario(
         f"name: fast\nseed: {seed}\narena: {{size: [{side}, {side}], walls: true}}\n"
@@ -113,4 +117,4 @@ def test_no_fast_robot_touches_anything_in_a_random_field(robot, side, seed):
     )
     trajectory = run(scenario)
     assert trajectory.collision is None
-    assert trajectory.ticks.speed.max() > 0.8 * scenario.robot.max_speed
+    assert trajectory.ticks.speed.max() > reached

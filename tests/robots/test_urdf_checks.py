@@ -35,6 +35,11 @@ WRONG = {
     "no mass": (swapped('mass value="4.0"', 'mass value="0"'), "value must be greater than 0"),
     "negative inertia": (swapped('ixx="0.03"', 'ixx="-0.03"'), "ixx must be greater than 0"),
     "impossible inertia": (swapped('izz="0.06"', 'izz="9"'), "no body has this inertia"),
+    "no weight": (swapped('mass value="4.0"', 'mass value="1e-9"'), "weighs less than"),
+    "too much inertia": (
+        swapped('ixx="0.03" iyy="0.04" izz="0.06"', 'ixx="600" iyy="600" izz="600"'),
+        "too large for 4 kg",
+    ),
     "friction": (
         swapped(CASTER, f'{CASTER}<contact><lateral_friction value="-1"/></contact>'),
         "lateral_friction must be between 0 and 10",
