@@ -231,7 +231,7 @@ def draw_robot(
         colour: Its colour.
         footprint: Outline of a body that is no disc, in radii, shape (N, 2); its own frame.
     """
-    size = radius * (1.5 if footprint is None else 1.0)
+    size = radius * (1.5 if footprint is None else 0.75)
     nose = arrow((float(centre[0]), float(centre[1])), heading, size)
     outline = None
     if footprint is not None:
