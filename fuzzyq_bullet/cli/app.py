@@ -16,6 +16,7 @@ from fuzzyq_bullet.cli import (
     page,
     race,
     report,
+    robots,
     run,
     scenarios,
     train,
@@ -53,6 +54,7 @@ _add("import", scenarios.import_map)
 _add("validate", scenarios.validate)
 _add("schema", scenarios.schema)
 _add("list", scenarios.list_scenarios)
+_add("robots", robots.robots)
 _add("train", train.train)
 _add("explain", explain.explain, context_settings=explain.CONTEXT_SETTINGS)
 _add("figure", report.figure)

@@ -13,6 +13,10 @@ from fuzzyq_bullet.scenario.robot import Robot
 TURN_GAIN = 4.0
 """Turn rate for an error of heading of 1 rad (1/s)."""
 
+GRIP = 2.5
+"""Greatest sideways acceleration v·ω that the tyres are asked to hold (m/s²): a robot that is so
+fast turns more slowly."""
+
 
 class Twist(NamedTuple):
     """Forward speed (m/s) and turn rate (rad/s, positive to the left)."""
@@ -70,10 +74,17 @@ class VelocityController:
 
 
 def limit_acceleration(now: Twist, wanted: Twist, robot: Robot, dt: float) -> Twist:
-    """Return the twist after ``dt`` seconds of moving towards the wanted one within the limits."""
+    """Return the twist after ``dt`` seconds of moving towards the wanted one within the limits.
+
+    The turn rate is limited by the grip of the tyres, too: v·ω ≤ ``GRIP``.
+    """
+    fastest = max(abs(now.speed), abs(wanted.speed))
+    turn_rate = wanted.turn_rate
+    if fastest * abs(turn_rate) > GRIP:
+        turn_rate = math.copysign(GRIP / fastest, turn_rate)
     return Twist(
         _towards(now.speed, wanted.speed, robot.acceleration * dt),
-        _towards(now.turn_rate, wanted.turn_rate, robot.turn_acceleration * dt),
+        _towards(now.turn_rate, turn_rate, robot.turn_acceleration * dt),
     )
 
 

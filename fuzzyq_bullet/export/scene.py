@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
 from foxglove.messages import (
     Color,
     CylinderPrimitive,
@@ -70,27 +71,34 @@ def world_entities(scenario: Scenario) -> SceneUpdate:
 
 def robot_entities(model: RobotModel) -> SceneUpdate:
     """Return the robot in its own frame, with an arrow that shows which way it faces."""
-    height = 2.0 * (model.height - model.sensor_height)
-    body = CylinderPrimitive(
-        pose=_pose(0.0, 0.0, model.sensor_height),
-        size=Vector3(x=2 * model.radius, y=2 * model.radius, z=height),
-        bottom_scale=1.0,
-        top_scale=1.0,
-        color=_colour(style.ROBOT),
-    )
     nose = meshes.prisms(
         [arrow((0.0, 0.0), 0.0, 1.2 * model.radius)], model.height, model.height + 0.005, style.CARD
     )
+    body = [_cylinder(model)] if model.is_disc else []
+    outline = np.array(model.footprint)
+    low = 2.0 * model.sensor_height - model.height
+    solids = [] if model.is_disc else [meshes.prisms([outline], low, model.height, style.ROBOT)]
     entity = SceneEntity(
         frame_id=ROBOT,
         id="robot",
         frame_locked=True,
         lifetime=Duration(0),
         timestamp=stamp(0),
-        cylinders=[body],
-        triangles=[_triangles(nose)],
+        cylinders=body,
+        triangles=[_triangles(solid) for solid in (*solids, nose)],
     )
     return SceneUpdate(entities=[entity])
+
+
+def _cylinder(model: RobotModel) -> CylinderPrimitive:
+    height = 2.0 * (model.height - model.sensor_height)
+    return CylinderPrimitive(
+        pose=_pose(0.0, 0.0, model.sensor_height),
+        size=Vector3(x=2 * model.radius, y=2 * model.radius, z=height),
+        bottom_scale=1.0,
+        top_scale=1.0,
+        color=_colour(style.ROBOT),
+    )
 
 
 def path_poses(ticks: Ticks) -> PosesInFrame:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED
 from fuzzyq_bullet.planning.decision import MODES
+from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video.footprints import arrow
@@ -99,9 +100,9 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
         axes.add_patch(_shape(obstacle, struck))
     for side in axes.spines.values():
         side.set(linewidth=2.2 if scenario.arena.walls else 0.6, color=INK)
-    start = Circle(
-        scenario.start.position, scenario.robot.radius, fc="white", ec=INK, lw=1.4, zorder=3
-    )
+    at = (*scenario.start.position, scenario.start_heading())
+    start = _body(scenario, *at)
+    start.set(fc="white", ec=INK, lw=1.4, zorder=3)
     axes.add_patch(start)
     goal = scenario.goal
     axes.add_patch(Circle(goal.position, goal.radius, fc=_GOAL_FACE, ec="none", zorder=3))
@@ -109,6 +110,14 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     axes.add_patch(Circle(goal.position, goal.radius, fc="none", ec=GREEN, lw=2.0, zorder=8))
     shown["start"] = _sample(_START_LOOK)
     shown["goal"] = _sample(_GOAL_LOOK)
+
+
+def _body(scenario: Scenario, x: float, y: float, heading: float) -> Patch:
+    """Return the robot's footprint at a pose (m, m, rad)."""
+    model = scenario.robot.spec
+    if model.is_disc:
+        return Circle((x, y), model.radius)
+    return Polygon(model.footprint_at(x, y, heading))
 
 
 def _shape(obstacle: Obstacle, struck: bool) -> Patch:
@@ -170,7 +179,9 @@ def _end(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     x, y = trajectory.ticks.position[-1].tolist()
     radius = trajectory.scenario.robot.radius
     nose = arrow((x, y), float(trajectory.ticks.heading[-1]), 1.15 * radius)
-    axes.add_patch(Circle((x, y), radius, fc=INK, ec="none", zorder=7))
+    body = _body(trajectory.scenario, x, y, float(trajectory.ticks.heading[-1]))
+    body.set(fc=INK, ec="none", zorder=7)
+    axes.add_patch(body)
     axes.add_patch(Polygon(nose, fc="white", ec="none", zorder=7.5))
     shown[LAST] = _sample(_END_LOOK)
     if trajectory.collision is not None:

@@ -42,6 +42,7 @@ def run_data(trajectory: Trajectory) -> dict[str, Any]:
     title, figures = outcome_lines(trajectory)
     asked = controller_of(scenario.planner) if has_rules(trajectory.decisions) else None
     controller = None if asked is None else definition_of(asked).model_dump(mode="json")
+    model = scenario.robot.spec
     return {
         "name": scenario.name,
         "planner": planner_name(trajectory),
@@ -53,6 +54,7 @@ def run_data(trajectory: Trajectory) -> dict[str, Any]:
         "field": _field(trajectory),
         "robot": {
             "radius": scenario.robot.radius,
+            "footprint": None if model.is_disc else [list(point) for point in model.footprint],
             "range": _number(sensor_range(trajectory)),
             "turn_unit": _number(float(getattr(scenario.planner, "turn_unit", math.nan)), 6),
         },

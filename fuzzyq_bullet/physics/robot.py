@@ -8,6 +8,9 @@ from typing import NamedTuple
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.robots import RobotModel
 
+_TYRE = 1.5
+"""Friction of a wheel whose URDF says nothing of it."""
+
 
 class RobotState(NamedTuple):
     """The robot at one instant.
@@ -41,24 +44,34 @@ class Robot:
         self._api = engine.api
         self.body = load_robot(engine, model)
         count = self._api.getNumJoints(self.body, physicsClientId=engine.client)
-        names = {
-            self._api.getJointInfo(self.body, index, physicsClientId=engine.client)[
-                1
-            ].decode(): index
+        told = [
+            self._api.getJointInfo(self.body, index, physicsClientId=engine.client)
             for index in range(count)
-        }
+        ]
+        names = {one[1].decode(): index for index, one in enumerate(told)}
         self.links = tuple(names.values())
-        self._wheels = (names["left_axle"], names["right_axle"])
+        self._wheels = (names[model.axles[0]], names[model.axles[1]])
+        links = {one[12].decode(): index for index, one in enumerate(told)}
+        for friction, given in ((_TYRE, model.gripping), (0.0, model.slippery)):
+            for link in given:  # the base has index -1, and no joint
+                self._api.changeDynamics(
+                    self.body,
+                    links.get(link, -1),
+                    lateralFriction=friction,
+                    rollingFriction=0.0,
+                    spinningFriction=0.0,
+                    physicsClientId=engine.client,
+                )
         self._forces = (model.motor_torque, model.motor_torque)
         inertial = self._api.getDynamicsInfo(self.body, -1, physicsClientId=engine.client)[3]
-        self._mass_x, _, self._mass_z = inertial
+        self._mass_x, self._mass_y, self._mass_z = inertial
 
     def place(self, x: float, y: float, heading: float) -> None:
         """Put the robot at rest on the ground, centre at (x, y)."""
         client = self._engine.client
         position = (
-            x + self._mass_x * math.cos(heading),
-            y + self._mass_x * math.sin(heading),
+            x + self._mass_x * math.cos(heading) - self._mass_y * math.sin(heading),
+            y + self._mass_x * math.sin(heading) + self._mass_y * math.cos(heading),
             self._mass_z,
         )
         orientation = (0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
@@ -97,8 +110,8 @@ class Robot:
         left, right = self._api.getJointStates(self.body, self._wheels, client)
         return RobotState(
             time,
-            x - self._mass_x * cos,
-            y - self._mass_x * sin,
+            x - self._mass_x * cos + self._mass_y * sin,
+            y - self._mass_x * sin - self._mass_y * cos,
             heading,
             vx * cos + vy * sin,
             turn_rate,

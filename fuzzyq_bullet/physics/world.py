@@ -32,9 +32,17 @@ class World(SensorWorld):
         self.robot = Robot(self.engine, self.model)
 
         self._group(ground, -1, Group.GROUND, Group.WHEELS)
-        self._group(self.robot.body, -1, Group.BODY, Group.OBSTACLES | Group.WALLS)
-        for link in self.robot.links:
-            self._group(self.robot.body, link, Group.WHEELS, Group.GROUND)
+        self._ground = ground
+        self._any_link = bool(self.model.corners)
+        if self._any_link:  # a user's URDF, whose body may be any of its links
+            parts = Group.BODY | Group.WHEELS
+            for link in (-1, *self.robot.links):
+                everything = Group.GROUND | Group.OBSTACLES | Group.WALLS
+                self._group(self.robot.body, link, parts, everything)
+        else:
+            self._group(self.robot.body, -1, Group.BODY, Group.OBSTACLES | Group.WALLS)
+            for link in self.robot.links:
+                self._group(self.robot.body, link, Group.WHEELS, Group.GROUND)
         if self.obstacle_body is not None:
             self._group(self.obstacle_body, -1, Group.OBSTACLES, Group.BODY)
         if self.walls is not None:
@@ -54,9 +62,12 @@ class World(SensorWorld):
         # Arguments by position: this is the innermost loop, and keywords cost a microsecond.
         step, touching = self._api.stepSimulation, self._api.getContactPoints
         body, client = self.robot.body, self.engine.client
+        link = -2 if self._any_link else -1
         for taken in range(1, steps + 1):
             step(client)
-            points = touching(body, -1, -1, -2, client)
+            points = touching(body, -1, link, -2, client)
+            if self._any_link:
+                points = [point for point in points if point[2] not in (self._ground, body)]
             if points:
                 strongest = max(points, key=lambda point: point[9])
                 if strongest[9] > 0.0:

@@ -11,6 +11,18 @@ from fuzzyq_bullet.robots.base import (
     robot_model,
     robot_names,
 )
-from fuzzyq_bullet.robots.fuzzyq import FUZZYQ
+
+# isort: off
+from fuzzyq_bullet.robots import (  # noqa: F401 - in the order in which they are listed, the default first
+    fuzzyq,
+    turtlebot3_burger,
+    turtlebot3_waffle,
+    create3,
+    jackal,
+    husky,
+)
+# isort: on
+
+FUZZYQ = fuzzyq.FUZZYQ
 
 __all__ = ["FUZZYQ", "RobotModel", "no_robot", "register_robot", "robot_model", "robot_names"]

@@ -31,6 +31,7 @@ from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import MAX_WORDED, problems_of
+from fuzzyq_bullet.scenario.robot import with_robot_in
 from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
 from fuzzyq_bullet.yaml_tree import Node, read_tree
 
@@ -92,7 +93,7 @@ def parse_scenario(
             f"{where}:{line}: obstacles: must have at most {MAX_OBSTACLES} values, got {len(given)}"
         )
     more = 0
-    data = _with_rules_in(tree, folder or Path(), where)
+    data = with_robot_in(_with_rules_in(tree, folder or Path(), where), folder)
     try:
         scenario = Scenario.model_validate(data)
     except ValidationError as error:

@@ -52,6 +52,8 @@ class Map:
         self._plan = plan = Plan(trajectory.scenario, extent_of(trajectory), rect, unit)
         self._scale, self.spot = plan.scale, plan.spot
         self._radius = trajectory.scenario.robot.radius
+        model = trajectory.scenario.robot.spec
+        self._footprint = None if model.is_disc else np.array(model.footprint) / model.radius
         positions = trajectory.ticks.position
         self._avoidance = Avoidance(trajectory)
         still = paint.card(rect, unit=unit)
@@ -115,7 +117,7 @@ class Map:
             _draw_line(image, box, stroke, colour, unit)
         if target is not None:
             diamond(image, box, target, 8.0, unit)
-        draw_robot(image, box, centre, -moment.heading, radius)
+        draw_robot(image, box, centre, -moment.heading, radius, footprint=self._footprint)
         if hit is not None:
             if len(self._struck):
                 _draw_ring(image, box, self._struck, unit)
@@ -216,12 +218,32 @@ def draw_robot(
     heading: float,
     radius: float,
     colour: style.Colour = style.ROBOT,
+    footprint: Floats | None = None,
 ) -> None:
-    """Draw the robot's disc; ``heading`` is clockwise, as the picture's y points down."""
-    nose = arrow((float(centre[0]), float(centre[1])), heading, radius * 1.5)
+    """Draw the robot; ``heading`` is clockwise, as the picture's y points down.
+
+    Args:
+        image: The part of the map that is drawn on.
+        box: Where it lies in the map (pixels).
+        centre: The robot's place (pixels).
+        heading: Where it faces (rad).
+        radius: Radius of its disc (pixels).
+        colour: Its colour.
+        footprint: Outline of a body that is no disc, in radii, shape (N, 2); its own frame.
+    """
+    size = radius * (1.5 if footprint is None else 0.75)
+    nose = arrow((float(centre[0]), float(centre[1])), heading, size)
+    outline = None
+    if footprint is not None:
+        cos, sin = math.cos(heading), math.sin(heading)
+        ahead, aside = radius * footprint[:, 0], -radius * footprint[:, 1]
+        outline = centre + np.column_stack([ahead * cos - aside * sin, ahead * sin + aside * cos])
 
     def body(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
-        pen.ellipse(at.disc(centre, radius), fill=255)
+        if outline is None:
+            pen.ellipse(at.disc(centre, radius), fill=255)
+        else:
+            pen.polygon(at(outline), fill=255)
 
     def mark(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
         pen.polygon(at(nose), fill=255)

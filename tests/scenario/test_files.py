@@ -87,7 +87,7 @@ def test_the_least_scenario_is_read_with_defaults():
          "x.yaml:4: seed: must be at most 9223372036854775807, got 9223372036854775808"),
         ("drive: wheel", "x.yaml:4: drive: got 'wheel'; did you mean 'wheels'? "
          "allowed: wheels, kinematic"),
-        ("robot: {max_speed: 1.01}", "x.yaml:4: robot.max_speed: must be at most 1, got 1.01"),
+        ("robot: {max_speed: 3.01}", "x.yaml:4: robot.max_speed: must be at most 3, got 3.01"),
         ("description: 5", "x.yaml:4: description: expected text, got 5; put it in quotes"),
         ("random: {radius: 0.2}", "x.yaml:4: random.count: is required"),
         ("planner: {name: fuzzy, weights: [1, x]}",
@@ -109,7 +109,8 @@ def test_a_misspelt_key_gets_a_suggestion_and_the_allowed_keys():
     )
     assert only(GOOD + "robot: {max_sped: 1}") == (
         "x.yaml:4: robot.max_sped: unknown key; did you mean 'max_speed'? "
-        "allowed: model, max_speed, max_turn_rate, acceleration, turn_acceleration"
+        "allowed: model, left_wheel, right_wheel, radius, track, wheel_radius, mass, max_speed, "
+        "max_turn_rate, acceleration, turn_acceleration"
     )
     assert "did you mean 'obstacles'?" in only(GOOD + "obstacle: []")
     assert "did you mean 'weights'?" in only(GOOD + "planner: {name: fuzzy, wieghts: [1, 1]}")

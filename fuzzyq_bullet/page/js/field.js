@@ -288,7 +288,19 @@ export class Field {
     const colour = colours();
     const radius = Math.max(this.run.data.robot.radius * this.scale, 8 * this.marks);
     const there = this.at(moment.x, moment.y);
-    disc(pen, there, radius);
+    const { footprint, radius: own } = this.run.data.robot;
+    if (footprint) {
+      const scale = radius / own;
+      const [cos, sin] = [Math.cos(moment.heading), Math.sin(moment.heading)];
+      pen.beginPath();
+      for (const [x, y] of footprint) {
+        const [east, north] = [scale * (x * cos - y * sin), scale * (x * sin + y * cos)];
+        pen.lineTo(there[0] + east, there[1] - north);
+      }
+      pen.closePath();
+    } else {
+      disc(pen, there, radius);
+    }
     pen.fillStyle = colour.robot;
     pen.fill();
     pen.strokeStyle = colour.page;
