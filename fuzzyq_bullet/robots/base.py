@@ -10,10 +10,10 @@ from pydantic import Field
 from fuzzyq_bullet.quantities import Model, Number
 from fuzzyq_bullet.wording import not_one_of
 
-MaxSpeed: TypeAlias = Annotated[Number, Field(ge=0.05, le=1.0)]
-MaxTurnRate: TypeAlias = Annotated[Number, Field(ge=0.2, le=3.0)]
-Acceleration: TypeAlias = Annotated[Number, Field(ge=0.1, le=2.0)]
-TurnAcceleration: TypeAlias = Annotated[Number, Field(ge=0.5, le=10.0)]
+MaxSpeed: TypeAlias = Annotated[Number, Field(ge=0.05, le=3.0)]
+MaxTurnRate: TypeAlias = Annotated[Number, Field(ge=0.2, le=6.0)]
+Acceleration: TypeAlias = Annotated[Number, Field(ge=0.1, le=20.0)]
+TurnAcceleration: TypeAlias = Annotated[Number, Field(ge=0.5, le=30.0)]
 _Positive: TypeAlias = Annotated[Number, Field(gt=0.0, le=1000.0)]
 
 RANGE_UNITS = 5.0
@@ -60,7 +60,7 @@ class RobotModel(Model):
 
     @property
     def sensor_range(self) -> float:
-        """Longest distance that a detection line tells (m): 5·S_p."""
+        """Longest distance that a detection line tells (m) unless the sensor says more: 5·S_p."""
         return RANGE_UNITS * self.radius
 
     @property
