@@ -109,17 +109,19 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
 
 
 def _range(scenario: Scenario) -> list[Conflict]:
-    """Return a range within which the longest step of the controller may not end."""
+    wrong = range_conflict(scenario)
+    return [] if wrong is None else [(("sensor", "range"), wrong)]
+
+
+def range_conflict(scenario: Scenario) -> str | None:
+    """Return what is wrong with a range in which the controller's longest step does not end."""
     least = LONGEST_STRIDE * scenario.robot.radius
     if scenario.sensor_range >= least:
-        return []
-    return [
-        (
-            ("sensor", "range"),
-            f"must be at least {least:g} m, the longest step of a robot of radius "
-            f"{scenario.robot.radius:g} m, got {scenario.sensor_range:g}",
-        )
-    ]
+        return None
+    return (
+        f"must be at least {least:g} m, the longest step of a robot of radius "
+        f"{scenario.robot.radius:g} m, got {scenario.sensor_range:g}"
+    )
 
 
 def _motions(scenario: Scenario) -> list[Conflict]:
