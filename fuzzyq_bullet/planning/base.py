@@ -29,8 +29,6 @@ MOST_HEADINGS = 1000
 """Most that may be asked for at once: PyBullet silently drops what is too much for one batch."""
 USUAL_SPEED = 0.6
 """Greatest speed (m/s) of the robot that all patience was measured with."""
-USUAL_TURN = 0.5
-"""How wide that robot turns at full speed (m)."""
 USUAL_HALF_TURN = 2.0
 """How long that robot may take to turn round on the spot (s)."""
 
@@ -73,16 +71,6 @@ class Motion:
         else:  # it brakes again before it turns as fast as it could
             half_turn = 2.0 * math.sqrt(math.pi / change)
         return max(1.0, USUAL_SPEED / self.max_speed, half_turn / USUAL_HALF_TURN)
-
-    @property
-    def wideness(self) -> float:
-        """How many times as wide as the usual robot's its turn at full speed is; at least 1.
-
-        It drives on while it begins to turn, and then on a circle: v·(ω/ω' + 1/ω).
-        """
-        rate = self.max_turn_rate
-        wide = self.max_speed * (rate / self.turn_acceleration + 1.0 / rate)
-        return max(1.0, wide / USUAL_TURN)
 
 
 class RangeSensor:

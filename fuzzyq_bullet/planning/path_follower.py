@@ -24,7 +24,7 @@ along it ..."""
 FACING = math.radians(2.0)
 """... as exactly as this before it goes on (rad)."""
 BESIDE = 0.15
-"""A point as near as this (m), or nearer than a robot that turns wider needs, ..."""
+"""A point as near as this (m) ..."""
 ASKEW = math.radians(30.0)
 """... and as far off the robot's heading as this (rad) cannot be reached on an arc."""
 ASIDE = tuple(
@@ -126,7 +126,7 @@ def _must_aim(observation: Observation, heading: float, length: float, narrow: b
     turn = abs(wrap_angle(heading - observation.heading))
     if observation.motion is None or turn <= FACING:
         return False
-    return narrow or (length <= BESIDE * observation.motion.wideness and turn > ASKEW)
+    return narrow or (length <= BESIDE and turn > ASKEW)
 
 
 def _aside(observation: Observation, heading: float, enough: float) -> Segment | None:
