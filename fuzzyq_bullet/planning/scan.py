@@ -17,10 +17,14 @@ Point: TypeAlias = tuple[float, float]
 _T = TypeVar("_T", bound=np.generic)
 
 RAYS = 120
-"""Thin rays of one scan, 3° apart, 6 cm at their far ends, and headings whose free distance is
-computed first. Where the robot sees farther than 5·S_p there are more of both."""
+"""Thin rays of one scan: 3° apart, 6 cm at their far ends."""
+HEADINGS = 120
+"""Headings whose free distance is computed first: 3° apart."""
+MANY_RAYS = 720
+"""Thin rays where the robot sees farther than 5·S_p: 0.5° apart, like those of a usual lidar. With
+fewer of them what lies between two of them looks like a gap from afar."""
 USUAL_RANGE = 5.0
-"""Range that they are enough for, in S_p."""
+"""Range that the fewer rays and headings are enough for, in S_p."""
 FINER = (1.0 / 3.0, 1.0 / 9.0)
 """Where the free distance is longest or changes much, headings are added closer together, in two
 turns: by these parts of the first spacing."""
@@ -44,10 +48,9 @@ def _around(count: int) -> tuple[Floats, NDArray[np.complex128]]:
     return headings, np.exp(1j * headings)
 
 
-def _rays(observation: Observation) -> int:
-    """Return how many rays there are: as close at their far ends as with a range of 5·S_p."""
-    farther = observation.range / (USUAL_RANGE * observation.unit)
-    return max(RAYS, min(math.ceil(RAYS * round(farther, 6)), MOST_HEADINGS))
+def _headings(farther: float) -> int:
+    """Return how many headings are as close at their far ends as usual, the range so many times."""
+    return min(math.ceil(HEADINGS * farther), MOST_HEADINGS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +91,11 @@ def scan_360(observation: Observation) -> Scan:
     that the robot stands beside already may stop it, so where something is nearer than that, its
     distance counts instead of the half width.
     """
-    first_headings, turns = _around(_rays(observation))
-    distance = observation.look(first_headings.tolist())
+    farther = observation.range / (USUAL_RANGE * observation.unit)
+    far = farther > 1.0 + 1e-9
+    first_headings, first_turns = _around(_headings(farther) if far else HEADINGS)
+    ray_headings, turns = _around(MANY_RAYS if far else RAYS)
+    distance = observation.look(ray_headings.tolist())
     met = distance < observation.range + observation.radius
     hits, distance = turns[met] * distance[met], distance[met]
     wide_squared = min(observation.radius, distance.min(initial=np.inf) - 1e-3) ** 2
@@ -103,7 +109,7 @@ def scan_360(observation: Observation) -> Scan:
         least: Floats = travel.min(axis=1, initial=observation.range)
         return np.maximum(least, 0.0)
 
-    headings, lengths = first_headings, lengths_along(turns.conj()[:, None])
+    headings, lengths = first_headings, lengths_along(first_turns.conj()[:, None])
     step = math.tau / len(headings)
     for part in FINER:
         edge = np.abs(lengths - _following(lengths)) > JUMP

@@ -50,7 +50,7 @@ class CorridorSensor:
 
     Attributes:
         radius: Half the width of a detection line (m).
-        range: Longest distance that a detection line tells (m): 5·S_p, unless the model has its own.
+        range: Longest distance that a detection line tells (m).
     """
 
     def __init__(
