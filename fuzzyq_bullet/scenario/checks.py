@@ -30,9 +30,9 @@ def find_conflicts(scenario: Scenario) -> list[Conflict]:
     Conflicts are: start or goal outside the arena; the robot's disc at the start, or at the centre
     of the goal, touching a wall or an obstacle; a start within the goal (a run of no steps, with
     no shortest path to measure it by); an obstacle wholly outside the walls; obstacles to be drawn
-    that are too large for the arena or too many; an obstacle that moves; a sensor that sees less far than one
-    step of the controller is long. Obstacles may overlap each
-    other and poke through walls.
+    that are too large for the arena or too many; an obstacle that moves; a sensor that
+    sees less far than the longest step of the controller. Obstacles may overlap each other and poke
+    through walls.
     """
     return [
         *_places(scenario),
