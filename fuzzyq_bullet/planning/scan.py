@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.planning.base import Floats, Observation
+from fuzzyq_bullet.planning.base import MOST_HEADINGS, Floats, Observation
 
 Point: TypeAlias = tuple[float, float]
 _T = TypeVar("_T", bound=np.generic)
@@ -19,6 +20,11 @@ RAYS = 120
 """Thin rays of one scan: 3° apart, 6 cm at their far ends."""
 HEADINGS = 120
 """Headings whose free distance is computed first: 3° apart."""
+MANY_RAYS = 720
+"""Thin rays where the robot sees farther than 5·S_p: 0.5° apart, like those of a usual lidar. With
+fewer of them what lies between two of them looks like a gap from afar."""
+USUAL_RANGE = 5.0
+"""Range that the fewer rays and headings are enough for, in S_p."""
 FINER = (1.0 / 3.0, 1.0 / 9.0)
 """Where the free distance is longest or changes much, headings are added closer together, in two
 turns: by these parts of the first spacing."""
@@ -31,12 +37,20 @@ TOUCH = 0.02
 CLOSE = 0.005
 """A gap narrower than the disc by more than this is a corner (m)."""
 
-_STEP = math.tau / HEADINGS
-_RAY_HEADINGS = np.arange(RAYS) * (math.tau / RAYS)
-_FIRST_HEADINGS = np.arange(HEADINGS) * _STEP
-_TURNS = np.exp(1j * _RAY_HEADINGS)
-"""Headings as complex numbers of length 1, so that a difference of two is one product."""
-_FIRST_TURNS = np.exp(-1j * _FIRST_HEADINGS)[:, None]
+
+@cache
+def _around(count: int) -> tuple[Floats, NDArray[np.complex128]]:
+    """Return so many headings (rad) all around, and the same as complex numbers of length 1.
+
+    So a difference of two is one product.
+    """
+    headings = np.arange(count) * (math.tau / count)
+    return headings, np.exp(1j * headings)
+
+
+def _headings(farther: float) -> int:
+    """Return how many headings are as close at their far ends as usual, the range so many times."""
+    return min(math.ceil(HEADINGS * farther), MOST_HEADINGS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +91,13 @@ def scan_360(observation: Observation) -> Scan:
     that the robot stands beside already may stop it, so where something is nearer than that, its
     distance counts instead of the half width.
     """
-    distance = observation.look(_RAY_HEADINGS.tolist())
+    farther = observation.range / (USUAL_RANGE * observation.unit)
+    far = farther > 1.0 + 1e-9
+    first_headings, first_turns = _around(_headings(farther) if far else HEADINGS)
+    ray_headings, turns = _around(MANY_RAYS if far else RAYS)
+    distance = observation.look(ray_headings.tolist())
     met = distance < observation.range + observation.radius
-    hits, distance = _TURNS[met] * distance[met], distance[met]
+    hits, distance = turns[met] * distance[met], distance[met]
     wide_squared = min(observation.radius, distance.min(initial=np.inf) - 1e-3) ** 2
 
     def lengths_along(turns: NDArray[np.complex128]) -> Floats:
@@ -91,11 +109,12 @@ def scan_360(observation: Observation) -> Scan:
         least: Floats = travel.min(axis=1, initial=observation.range)
         return np.maximum(least, 0.0)
 
-    headings, lengths = _FIRST_HEADINGS, lengths_along(_FIRST_TURNS)
+    headings, lengths = first_headings, lengths_along(first_turns.conj()[:, None])
+    step = math.tau / len(headings)
     for part in FINER:
         edge = np.abs(lengths - _following(lengths)) > JUMP
         worth = np.flatnonzero(_peaks(lengths) | edge | _preceding(edge))
-        finer = (headings[worth, None] + part * _STEP * np.array([-2, -1, 1, 2])).ravel() % math.tau
+        finer = (headings[worth, None] + part * step * np.array([-2, -1, 1, 2])).ravel() % math.tau
         headings, first = np.unique(np.concatenate([headings, finer]).round(6), return_index=True)
         lengths = np.concatenate([lengths, lengths_along(np.exp(-1j * finer)[:, None])])[first]
 

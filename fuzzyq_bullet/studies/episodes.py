@@ -13,7 +13,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.planning import PlannerSettings, settings_for
-from fuzzyq_bullet.scenario import Drive, Limits, Scenario, cellular_task, random_task
+from fuzzyq_bullet.scenario import Drive, Limits, Robot, Scenario, cellular_task, random_task
+from fuzzyq_bullet.sensors import ExactSensor
 from fuzzyq_bullet.trajectory import Outcome
 
 Place: TypeAlias = tuple[str, int, int]
@@ -62,6 +63,38 @@ class Environment:
         return cls(layout, count, run, sweep_seed * MOST_RUNS + run)
 
 
+class Outfit(BaseModel):
+    """What drives through the environments of a sweep instead of their own robot.
+
+    Attributes:
+        robot: Its model; None for that of the environment.
+        max_speed: Its greatest speed (m/s); None for that of the model, or of the environment.
+        range: How far it sees (m); None for 5·S_p.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    robot: str | None = None
+    max_speed: float | None = None
+    range: float | None = None
+
+    def on(self, task: Scenario) -> Scenario:
+        """Return a scenario with this robot in it.
+
+        Raises:
+            pydantic.ValidationError: If there is no such robot, or it cannot be so.
+        """
+        given = {} if self.max_speed is None else {"max_speed": self.max_speed}
+        own = {} if self.robot is not None else task.robot.model_dump()
+        model = {} if self.robot is None else {"model": self.robot}
+        robot = Robot.model_validate({**own, **model, **given})
+        sensor = ExactSensor.model_validate({"range": self.range})
+        return task.model_copy(update={"robot": robot, "sensor": sensor})
+
+
+USUAL = Outfit()
+
+
 @dataclass(frozen=True)
 class Job:
     """One episode.
@@ -73,6 +106,7 @@ class Job:
         settings: The planner's settings.
         drive: ``wheels`` or ``kinematic``.
         limits: When it is given up.
+        outfit: What drives instead of the environment's own robot.
     """
 
     environment: Environment
@@ -80,6 +114,7 @@ class Job:
     settings: PlannerSettings
     drive: Drive
     limits: Limits
+    outfit: Outfit = USUAL
 
     def __post_init__(self) -> None:
         if not _LABEL.fullmatch(self.planner):
@@ -103,7 +138,7 @@ class Job:
             task = cellular_task(where.seed)
         else:
             task = random_task(where.seed, layout=where.layout, count=where.count)
-        return task.model_copy(
+        return self.outfit.on(task).model_copy(
             update={"planner": self.settings, "drive": self.drive, "limits": self.limits}
         )
 
@@ -115,6 +150,7 @@ class Job:
             "settings": self.settings.model_dump(mode="json"),
             "drive": self.drive,
             "limits": self.limits.model_dump(mode="json"),
+            "outfit": self.outfit.model_dump(mode="json"),
         }
 
     @classmethod
@@ -126,6 +162,7 @@ class Job:
             settings=settings_for(order["settings"]["name"]).model_validate(order["settings"]),
             drive=order["drive"],
             limits=Limits.model_validate(order["limits"]),
+            outfit=Outfit.model_validate(order["outfit"]),
         )
 
 
@@ -138,7 +175,7 @@ class Row(BaseModel):
         count: Number of obstacles asked for; None for layouts without a count.
         run: Number of the environment.
         seed: Seed of the scenario.
-        feasible: Whether there is a way for a disc of radius ``ROOM`` (``runner.sweep``); None
+        feasible: Whether there is a way for a disc of radius ``room_of`` (``studies.sweep``); None
             where the environment could not be built.
         outcome: As in results, or ``error`` where the episode failed itself.
         steps: As in results; so are the following, all None after an error.

@@ -17,6 +17,7 @@ from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.scenario import Scenario, realise
+from fuzzyq_bullet.sensors import SENSOR_MARGIN
 from fuzzyq_bullet.studies.episodes import Job, Row, as_csv
 from fuzzyq_bullet.studies.storage import Folder, Journal
 from fuzzyq_bullet.studies.study import Work
@@ -43,6 +44,11 @@ class Done:
     record: bytes | None = None
 
 
+def room_of(scenario: Scenario) -> float:
+    """Return the radius (m) of the disc for which there must be a way: ``ROOM`` for its robot."""
+    return scenario.robot.radius + SENSOR_MARGIN
+
+
 def run_job(job: Job, run: Callable[[Scenario], Trajectory] = run) -> Done:
     """Run one episode. Whatever it raises becomes its row, not the end of the sweep.
 
@@ -53,7 +59,7 @@ def run_job(job: Job, run: Callable[[Scenario], Trajectory] = run) -> Done:
     way: bool | None = None
     try:
         scenario = realise(job.scenario())
-        way = feasible(scenario, ROOM)
+        way = feasible(scenario, room_of(scenario))
         trajectory = run(scenario)
         row = Row.of(job, result_of(trajectory), way)
         return Done(row, _record(trajectory) if way and not row.success else None)

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.planning import settings_for
+from fuzzyq_bullet.planning import ImprovedFuzzySettings, settings_for
 from fuzzyq_bullet.scenario import realise
-from fuzzyq_bullet.studies.episodes import Row
+from fuzzyq_bullet.studies.episodes import Job, Row
 from fuzzyq_bullet.studies.escape.comparison import BESIDE, SUM, compare
-from fuzzyq_bullet.studies.escape.study import EscapePlan
+from fuzzyq_bullet.studies.escape.study import Escape, EscapePlan
 from fuzzyq_bullet.studies.escape.table import TRAPS, Line, score_of, table_of
 from tests.helpers.commands import Call
 
@@ -248,3 +248,23 @@ def test_what_knows_the_truth_is_told_beside_a_planner(tmp_path: Path, inside: C
     assert len(told["rows"]) == 1  # the planner's own, as without --beside
     with pytest.raises(UserError, match="fuzzy has no controller and no memory to leave out"):
         inside(*command, "--planner", "fuzzy", "--out", tmp_path / "other")
+
+
+def test_another_robot_drives_the_same_study_and_its_plan_tells_it_again():
+    study = Escape(cellular=1, counts="none", traps=0, rectangles="none", runs=1)
+    other = study.model_copy(update={"robot": "jackal", "max_speed": 2.0, "range": 3.0})
+    job, *_ = other.plan().jobs({"improved-fuzzy": ImprovedFuzzySettings()})
+    task = Job.of_order(job.as_order()).scenario()
+    assert (task.robot.model, task.robot.max_speed, task.sensor_range) == ("jackal", 2.0, 3.0)
+    assert Escape.recalled({"escape": other.plan()}).plan() == other.plan()
+    usual, *_ = study.plan().jobs({"improved-fuzzy": ImprovedFuzzySettings()})
+    assert (usual.scenario().robot.max_speed, usual.scenario().sensor_range) == (1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "option"),
+    [({"robot": "x"}, "--robot"), ({"max_speed": 9.0}, "--max-speed"), ({"range": 0.3}, "--range")],
+)
+def test_a_robot_that_cannot_be_is_named_by_its_option(wrong, option):
+    with pytest.raises(UserError, match=option):
+        Escape(**wrong).plan()

@@ -22,7 +22,7 @@ from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.studies.episodes import Job
-from fuzzyq_bullet.studies.sweep import ROOM, answer, run_job
+from fuzzyq_bullet.studies.sweep import answer, room_of, run_job
 from fuzzyq_bullet.trajectory import Trajectory
 
 SPACING = 0.05
@@ -76,7 +76,7 @@ class ShortestPathDriver:
 
 def drive_shortest_path(scenario: Scenario) -> Trajectory:
     """Drive a realised scenario along its shortest path, as far from things as costs nothing."""
-    route = shortest_path(scenario, ROOM) or shortest_path(scenario)
+    route = shortest_path(scenario, room_of(scenario)) or shortest_path(scenario)
     for room in SLACK:
         wider = shortest_path(scenario, room)
         if route is not None and wider is not None and wider.length < LONGER * route.length:
@@ -90,7 +90,7 @@ def drive_true_exits(scenario: Scenario) -> Trajectory:
     """Drive a realised scenario by its planner, which is told the true way on from every exit."""
     planner = planner_of(scenario)
     if isinstance(planner, ImprovedFuzzyBase):
-        planner.know(DistanceField(scenario, ROOM).at)
+        planner.know(DistanceField(scenario, room_of(scenario)).at)
     return run_with(planner, scenario)
 
 

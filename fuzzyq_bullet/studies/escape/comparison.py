@@ -57,12 +57,15 @@ class Contender:
     score: float | None
 
 
-def compare(rows: Iterable[Row], planners: Sequence[str]) -> list[Contender]:
+def compare(
+    rows: Iterable[Row], planners: Sequence[str], speed: float | None = None
+) -> list[Contender]:
     """Return how each drove, by family; the scattered fields of all counts together once more.
 
     Args:
         rows: Rows with one drive.
         planners: What they call those that are compared, first the planner itself.
+        speed: Full speed (m/s), if it is not that of the environments' own robot.
     """
     families = {family_name(*key): group for key, group in by_family(rows).items()}
     scattered = [name for name in families if name.startswith("scatter")]
@@ -71,17 +74,19 @@ def compare(rows: Iterable[Row], planners: Sequence[str]) -> list[Contender]:
     return [
         contender
         for family, group in families.items()
-        for contender in _compared(family, group, planners)
+        for contender in _compared(family, group, planners, speed)
     ]
 
 
-def _compared(family: str, rows: Sequence[Row], planners: Sequence[str]) -> Iterable[Contender]:
+def _compared(
+    family: str, rows: Sequence[Row], planners: Sequence[str], speed: float | None
+) -> Iterable[Contender]:
     sets = {name: {row.place: row for row in rows if row.planner == name} for name in planners}
     ours = sets[planners[0]]
     for name, theirs in sets.items():
         if not theirs:
             continue
-        figures = Figures.of(list(theirs.values()))
+        figures = Figures.of(list(theirs.values()), speed)
         both = [
             (row.time_s, ours[place].time_s)
             for place, row in sorted(theirs.items())

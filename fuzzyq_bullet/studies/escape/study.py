@@ -6,13 +6,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, replace
 from typing import Any, ClassVar
 
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.planning.settings import RecoverySettings
-from fuzzyq_bullet.scenario import Drive, Limits
-from fuzzyq_bullet.studies.episodes import Environment, Job
+from fuzzyq_bullet.robots import no_robot, robot_names
+from fuzzyq_bullet.scenario import Drive, Limits, cellular_task
+from fuzzyq_bullet.scenario.checks import range_conflict
+from fuzzyq_bullet.sensors import SENSOR_MARGIN
+from fuzzyq_bullet.studies.episodes import USUAL, Environment, Job, Outfit
 from fuzzyq_bullet.studies.escape.comparison import BESIDE, compare, shown_comparison
 from fuzzyq_bullet.studies.escape.table import TRAPS, shown_table, table_of
 from fuzzyq_bullet.studies.options import (
@@ -51,6 +54,7 @@ class EscapePlan(Plan):
         seed: Of the sweep.
         beside: What else runs in the same environments, with the first drive alone: ``BESIDE``.
         limits: When an episode is given up.
+        outfit: What drives instead of the environments' own robot.
     """
 
     planner: PlannerDescription
@@ -63,6 +67,7 @@ class EscapePlan(Plan):
     seed: Seed = 0
     beside: tuple[str, ...] = ()
     limits: Limits = PATIENT
+    outfit: Outfit = USUAL
 
     def environments(self) -> Iterator[Environment]:
         """Yield all environments."""
@@ -85,8 +90,14 @@ class EscapePlan(Plan):
 
     def jobs(self, planners: Mapping[str, PlannerSettings]) -> list[Job]:
         """Return all jobs; what goes in circles is given up sooner."""
-        jobs = super().jobs(planners)
-        return [replace(one, limits=BRIEF) if one.planner == "no-memory" else one for one in jobs]
+        return [
+            replace(
+                one,
+                limits=BRIEF if one.planner == "no-memory" else one.limits,
+                outfit=self.outfit,
+            )
+            for one in super().jobs(planners)
+        ]
 
 
 @register_study
@@ -122,6 +133,11 @@ class Escape(Study):
     planner: str = Field("improved-fuzzy", description="Planner to ask.")
     weights: str | None = Field(None, description="Its weights ω1,ω2; 1,1 where it takes any.")
     rules: str | None = Field(None, description=RULES_HELP)
+    robot: str | None = Field(None, description="Robot that drives; by default the usual one.")
+    max_speed: float | None = Field(
+        None, description="Its greatest speed (m/s); by default that of its model."
+    )
+    range: float | None = Field(None, description="How far it sees (m); by default 5·S_p.")
     beside: bool = Field(
         False, description="Run it without parts of it, and what knows the truth, as well."
     )
@@ -130,6 +146,29 @@ class Escape(Study):
         """Return the one that is asked, and its variants."""
         settings = with_rules(planner_of(self.planner, self.weights), self.rules)
         return {self.planner: settings, **(variants_of(settings) if self.beside else {})}
+
+    def outfit(self) -> Outfit:
+        """Return what drives.
+
+        Raises:
+            UserError: If there is no such robot, or it cannot be so fast or see so far.
+        """
+        outfit = Outfit(robot=self.robot, max_speed=self.max_speed, range=self.range)
+        if self.robot is not None and self.robot not in robot_names():
+            raise UserError(f"--robot: {no_robot(self.robot)}")
+        try:
+            task = outfit.on(cellular_task(0))
+        except ValidationError as error:
+            options = {"max_speed": "--max-speed", "range": "--range"}
+            raise UserError(
+                *(
+                    f"{options[str(one['loc'][-1])]}: {one['msg']}, got {one['input']:g}"
+                    for one in error.errors(include_url=False)
+                )
+            ) from error
+        if (wrong := range_conflict(task)) is not None:
+            raise UserError(f"--range: {wrong}")
+        return outfit
 
     def plan(self) -> EscapePlan:
         """Return what is run; asking for nothing is a mistake too."""
@@ -145,6 +184,7 @@ class Escape(Study):
             cellular=self.cellular,
             seed=self.seed,
             beside=tuple(BESIDE) if beside else (),
+            outfit=self.outfit(),
         )
         if not any(True for _ in plan.environments()):
             raise UserError(
@@ -168,6 +208,7 @@ class Escape(Study):
             weights=None if not weights else ",".join(f"{one:g}" for one in weights),
             rules=rules_told(plan.planner),
             seed=plan.seed,
+            **plan.outfit.model_dump(),
             beside=bool(plan.beside),
         )
 
@@ -183,7 +224,10 @@ class Escape(Study):
     def findings(self, results: Results) -> Findings:
         """Return the table of families, with the targets that are missed."""
         swept = results["escape"]
-        lines = table_of(row for row in swept.rows if row.planner == self.planner)
+        outfit: Outfit = swept.plan.outfit
+        robot = outfit.on(cellular_task(0)).robot
+        speed = None if outfit.robot is None and outfit.max_speed is None else robot.max_speed
+        lines = table_of((row for row in swept.rows if row.planner == self.planner), speed)
         given = swept.plan.planner.get("weights")
         named = self.planner
         if given is not None:
@@ -202,8 +246,9 @@ class Escape(Study):
         ]
         drive = swept.plan.drives[0]
         driven = [row for row in swept.rows if row.drive == drive]
-        compared = compare(driven, (self.planner, *swept.plan.beside))
-        tables = (shown_table(lines, named, self.seed), shown_comparison(compared, drive))
+        compared = compare(driven, (self.planner, *swept.plan.beside), speed)
+        shown = shown_table(lines, named, self.seed, _told(outfit), robot.radius + SENSOR_MARGIN)
+        tables = (shown, shown_comparison(compared, drive))
         told = {**told, "rows": rows, "compared": [asdict(one) for one in compared]}
         return Findings(tables, told, missed=tuple(missed))
 
@@ -212,6 +257,18 @@ class Escape(Study):
         from fuzzyq_bullet.studies.escape.bounds import work
 
         return work
+
+
+def _told(outfit: Outfit) -> str:
+    """Return which robot drives, in words."""
+    if outfit == USUAL:
+        return "there at 1 m/s"
+    parts = [
+        f"robot {outfit.robot}" if outfit.robot else "",
+        f"at most {outfit.max_speed:g} m/s" if outfit.max_speed else "",
+        f"sees {outfit.range:g} m" if outfit.range else "",
+    ]
+    return ", ".join(filter(None, parts))
 
 
 def variants_of(settings: PlannerSettings) -> dict[str, PlannerSettings]:

@@ -59,14 +59,19 @@ class Figures:
     score: float | None
 
     @classmethod
-    def of(cls, rows: Sequence[Row]) -> Figures:
-        """Return the figures of at least one row."""
+    def of(cls, rows: Sequence[Row], speed: float | None = None) -> Figures:
+        """Return the figures of at least one row.
+
+        Args:
+            rows: The rows.
+            speed: Full speed (m/s), if it is not that of the environments' own robot.
+        """
         feasible = [row for row in rows if row.feasible is not False]
         found = [row for row in rows if row.success]
         ways = [
             (
                 row.path_length_m / row.shortest_path_m,
-                row.time_s * full_speed(row) / row.shortest_path_m,
+                row.time_s * (speed or full_speed(row)) / row.shortest_path_m,
             )
             for row in found
             if row.shortest_path_m and row.path_length_m is not None and row.time_s is not None
@@ -164,17 +169,24 @@ def by_family(rows: Iterable[Row]) -> dict[tuple[str, int | None], list[Row]]:
     }
 
 
-def table_of(rows: Iterable[Row]) -> list[Line]:
-    """Return the table of one planner's rows, in any order: a line for each family and count."""
-    return [_line(family, count, group) for (family, count), group in by_family(rows).items()]
+def table_of(rows: Iterable[Row], speed: float | None = None) -> list[Line]:
+    """Return the table of one planner's rows, in any order: a line for each family and count.
+
+    Args:
+        rows: The rows.
+        speed: Full speed (m/s), if it is not that of the environments' own robot.
+    """
+    return [
+        _line(family, count, group, speed) for (family, count), group in by_family(rows).items()
+    ]
 
 
-def _line(family: str, count: int | None, rows: Sequence[Row]) -> Line:
+def _line(family: str, count: int | None, rows: Sequence[Row], speed: float | None) -> Line:
     group: dict[str, list[Row]] = {}
     for row in rows:
         group.setdefault(row.drive, []).append(row)
     # Wheels first: what is measured in physics counts, the point robot stands beside it.
-    drives = {name: Figures.of(group[name]) for name in sorted(group, reverse=True)}
+    drives = {name: Figures.of(group[name], speed) for name in sorted(group, reverse=True)}
     seen = {row.place: row.feasible is not False for rows in group.values() for row in rows}
     targets: list[Target] = []
     for drive, figures in drives.items():
@@ -212,8 +224,16 @@ def _listed(bounds: dict[int, float]) -> str:
     return ", ".join(f"{bound:g} at {count}" for count, bound in bounds.items())
 
 
-def shown_table(lines: Sequence[Line], planner: str, seed: int) -> Table:
-    """Return the table, which fits into 80 columns."""
+def shown_table(lines: Sequence[Line], planner: str, seed: int, driven: str, room: float) -> Table:
+    """Return the table, which fits into 80 columns.
+
+    Args:
+        lines: Its lines.
+        planner: What it calls the planner.
+        seed: Of the sweep.
+        driven: Which robot drives, in words.
+        room: Radius of the disc for which there must be a way (m).
+    """
     rows = []
     for line in lines:
         cells = [
@@ -234,8 +254,8 @@ def shown_table(lines: Sequence[Line], planner: str, seed: int) -> Table:
     columns = ("obstacles", "feasible", "drive", *(name for name, _, _ in _COLUMNS), "targets")
     caption = (
         f"{planner}; seed {seed}; walled 10 × 10 m, start and goal near corners at random; "
-        "cellular: a corridor of 10 × 5 m with open sides, at 1 m/s.\n"
-        "feasible: there is a way for a disc of radius 0.22 m; found: share of those that "
+        f"cellular: a corridor of 10 × 5 m with open sides; {driven}.\n"
+        f"feasible: there is a way for a disc of radius {room:.3g} m; found: share of those that "
         "reached the goal; hits: collisions in all; path: mean over the successes of driven "
         "over shortest path; time: mean over the successes, in times of the shortest path at "
         "full speed, and its median; clear: least distance to anything (m).\n"
