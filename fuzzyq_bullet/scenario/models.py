@@ -21,6 +21,7 @@ from pydantic import (
     ValidatorFunctionWrapHandler,
     WrapValidator,
     field_serializer,
+    model_serializer,
 )
 from pydantic.json_schema import models_json_schema
 from pydantic_core import PydanticCustomError
@@ -40,7 +41,7 @@ from fuzzyq_bullet.scenario.expectations import (
     expect_model,
 )
 from fuzzyq_bullet.scenario.layouts import AnyLayout
-from fuzzyq_bullet.scenario.places import Arena, Goal, Start
+from fuzzyq_bullet.scenario.places import Arena, Goal, Start, Via
 from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.sensors.base import SENSORS, AnySensor, ExactSensor, SensorModel
 from fuzzyq_bullet.shapes import Obstacle
@@ -66,6 +67,8 @@ def _default_planner() -> PlannerSettings:
 
 _AT_REST = STILL.model_dump()
 _LONGEST_NAME = 100
+MAX_VIA = 100
+"""Most via points of a scenario."""
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
@@ -120,6 +123,9 @@ class Scenario(Model):
     seed: Annotated[Count, Field(ge=0, le=2**63 - 1)] = 0
     arena: Arena = Arena()
     start: Start
+    via: tuple[Via, ...] = Field(
+        default=(), max_length=MAX_VIA, description="To be passed before the goal, in this order."
+    )
     goal: Goal
     robot: Robot = Robot()
     sensor: Annotated[AnySensor, WrapValidator(_choose_sensor)] = Field(
@@ -146,12 +152,25 @@ class Scenario(Model):
                 del item["motion"]
         return told
 
+    @model_serializer(mode="wrap")
+    def _without_via(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out that nothing is to be passed."""
+        told: dict[str, Any] = handler(self)
+        if not self.via:
+            told.pop("via", None)
+        return told
+
+    @property
+    def targets(self) -> tuple[Via | Goal, ...]:
+        """The via points in their order, then the goal."""
+        return (*self.via, self.goal)
+
     def start_heading(self) -> float:
-        """Return the heading at the start (rad); towards the goal when none is given."""
+        """Return the heading at the start (rad); towards the first target by default."""
         if self.start.heading is not None:
             return self.start.heading
-        dx = self.goal.position[0] - self.start.position[0]
-        dy = self.goal.position[1] - self.start.position[1]
+        dx = self.targets[0].position[0] - self.start.position[0]
+        dy = self.targets[0].position[1] - self.start.position[1]
         return math.atan2(dy, dx)
 
 
