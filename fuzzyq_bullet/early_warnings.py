@@ -79,6 +79,6 @@ def _too_short(scenario: Scenario) -> Iterator[Problem]:
         if limit is not None and limit < least:
             yield Problem(
                 loc,
-                f"{limit:g} s is too short: the straight line of {way:.1f} m to the goal{past} takes "
-                f"{least:.1f} s at {speed:g} m/s",
+                f"{limit:g} s is too short: the straight line of {way:.1f} m to the goal{past} "
+                f"takes {least:.1f} s at {speed:g} m/s",
             )
