@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from fuzzyq_bullet.cli.options import Json, PluginOption
-from fuzzyq_bullet.errors import UserError
 
 
 def doctor(
