@@ -16,7 +16,6 @@ from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
 from fuzzyq_bullet.planning import MODES
 from fuzzyq_bullet.rules_turn import share_turned
 from fuzzyq_bullet.scenario import Scenario
-from fuzzyq_bullet.scenario.passing import passed_along
 from fuzzyq_bullet.trajectory import Outcome, Trajectory
 from fuzzyq_bullet.wording import plain
 
@@ -148,7 +147,7 @@ def result_of(trajectory: Trajectory) -> Result:
         rules_turn=None if turned is None else round(turned, 6),
         digest=trajectory.digest(),
         version=trajectory.version,
-        via_passed=passed_along(scenario.via, ticks.position)[-1] if scenario.via else None,
+        via_passed=int(trajectory.via_passed[-1]) if scenario.via else None,
     )
 
 

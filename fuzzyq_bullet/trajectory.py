@@ -10,6 +10,7 @@ import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, make_dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
@@ -20,6 +21,7 @@ from pydantic import BaseModel, Field, ValidationError
 from fuzzyq_bullet.columns import (
     Column,
     Columns,
+    array_of,
     check_arrays,
     columns_of,
     csv_of,
@@ -35,6 +37,7 @@ from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.record_checks import check_collision, check_order
 from fuzzyq_bullet.scenario.expectations import ANY_NAME
 from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.passing import passed_along
 from fuzzyq_bullet.scenario.problems import unknown_names
 from fuzzyq_bullet.untrusted import read_arrays
 from fuzzyq_bullet.version import __version__
@@ -182,7 +185,7 @@ class Trajectory:
             decisions=Decisions(
                 tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
                 **{
-                    name: _array(column, [getattr(decision, name) for _, decision in decisions])
+                    name: array_of(column, [getattr(decision, name) for _, decision in decisions])
                     for name, column in fields_of(scenario.planner).items()
                 },
             ),
@@ -193,6 +196,11 @@ class Trajectory:
         """Return the ticks or the decisions as CSV (docs/record.md); see ``columns.csv_of``."""
         columns = TICKS if group == "ticks" else self.decision_columns
         return csv_of(columns, vars(getattr(self, group)), units=units)
+
+    @cached_property
+    def via_passed(self) -> NDArray[np.int64]:
+        """How many via points were passed by each tick, shape (T,)."""
+        return np.array(passed_along(self.scenario.via, self.ticks.position), dtype=np.int64)
 
     @property
     def decision_columns(self) -> Columns:
@@ -338,12 +346,3 @@ def _clearance(field: Obstacles, positions: Floats, drive: str) -> Floats:
     if drive == "kinematic":
         return field.clearance_along(positions[[0, *range(len(positions) - 1)]], positions)[0]
     return field.clearance(positions)
-
-
-def _array(column: Column, values: list[Any]) -> NDArray[Any]:
-    """Return what was decided as an array: of words, their numbers."""
-    if column.words:
-        return np.array([column.words.index(word) for word in values], dtype=column.dtype)
-    array = np.array(values, dtype=column.dtype).reshape(len(values), *column.shape)
-    # What a planner cannot put into a number is not explained; only a reach may be endless.
-    return array if column.endless else np.where(np.isinf(array), np.nan, array)

@@ -14,7 +14,6 @@ from fuzzyq_bullet.video.timeline import NO_DECISION, sensor_range
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.quantities import Point
-from fuzzyq_bullet.scenario.passing import passed_along
 from fuzzyq_bullet.trajectory import Decisions, Trajectory
 
 STRAIGHT = math.radians(5.0)
@@ -66,7 +65,7 @@ def is_asked(decisions: Decisions, index: int) -> bool:
 
 def aim_name(trajectory: Trajectory, index: int) -> str:
     """Return what a decision aims at, in words: goal, via point, or the way out."""
-    name, position = _target(trajectory, index)
+    name, position = target_of(trajectory, index)
     aim = trajectory.decisions.aim[index].tolist()
     routine = MODES[int(trajectory.decisions.mode[index])] == "routine"
     if routine or not math.isfinite(sum(aim)):
@@ -74,11 +73,11 @@ def aim_name(trajectory: Trajectory, index: int) -> str:
     return name if math.dist(aim, position) < 1e-9 else "the way out"
 
 
-def _target(trajectory: Trajectory, index: int) -> tuple[str, Point]:
+def target_of(trajectory: Trajectory, index: int) -> tuple[str, Point]:
     """Return the target of a decision: what it is called, and where it is (m)."""
     scenario, tick = trajectory.scenario, int(trajectory.decisions.tick[index])
     if scenario.via:
-        passed = passed_along(scenario.via, trajectory.ticks.position[: tick + 1])[-1]
+        passed = int(trajectory.via_passed[tick])
         if passed < len(scenario.via):
             name = f"via point {passed + 1} of {len(scenario.via)}"
             return name, scenario.via[passed].position
@@ -93,7 +92,7 @@ def off_aim(trajectory: Trajectory, index: int) -> float:
         x, y = trajectory.ticks.position[int(decisions.tick[index])].tolist()
         aim = decisions.aim[index].tolist()
         known = math.isfinite(sum(aim))
-        aim_x, aim_y = aim if known else _target(trajectory, index)[1]
+        aim_x, aim_y = aim if known else target_of(trajectory, index)[1]
         towards = math.atan2(aim_y - y, aim_x - x)
     return math.remainder(float(decisions.heading[index]) - towards, math.tau)
 

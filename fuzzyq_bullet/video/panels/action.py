@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.explanation import aim_name, off_aim
+from fuzzyq_bullet.video.explanation import aim_name, off_aim, target_of
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.style import ACTION
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
@@ -47,7 +47,8 @@ class Action:
         card = canvas.image
         card.paste(style.LINE, mask=paint.mask((0, 0, *ACTION.size), _dial_face))
         paint.write(card, (14, 199), "step", style.MUTED, 17)
-        names = ("speed", "to the goal", "nearest thing", "" if self._weighted else "known free")
+        target = "to the next target" if trajectory.scenario.via else "to the goal"
+        names = ("speed", target, "nearest thing", "" if self._weighted else "known free")
         for row, name in enumerate(names):
             paint.write(card, (_FACTS, 40 + _ROW * row), name, style.MUTED, 16)
         if self._weighted:
@@ -65,7 +66,8 @@ class Action:
             step = float(self._decisions.step[index])
             turn = math.radians(round(math.degrees(off_aim(self._trajectory, index))))
             name = aim_name(self._trajectory, index)
-        away = math.dist(moment.position, self._goal)
+        target = self._goal if index == NO_DECISION else target_of(self._trajectory, index)[1]
+        away = math.dist(moment.position, target)
         facts = (
             f"{abs(moment.speed):.2f} m/s",
             f"{away:.2f} m" if away < 100 else f"{away:.0f} m",
