@@ -72,4 +72,5 @@ class Inspection(World):
             physicsClientId=self.engine.client,
         )
         lengths: Floats = np.hypot(*(ends - starts).T)
-        return lengths * np.array([hit[2] for hit in hits])
+        reached: Floats = lengths * np.array([hit[2] for hit in hits])
+        return reached
