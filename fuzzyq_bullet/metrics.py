@@ -109,8 +109,6 @@ class Result(BaseModel):
         """
         row: dict[str, str | int | float | None] = {}
         for name, value in self:
-            if name == "via_passed" and value is None:
-                continue
             parts = value if isinstance(value, BaseModel) else None
             row |= {name: value} if parts is None else {f"{name}_{key}": n for key, n in parts}
         return row
