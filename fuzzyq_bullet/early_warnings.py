@@ -79,9 +79,12 @@ def _numbers(data: Any, loc: Loc) -> Iterator[tuple[Loc, float]]:
 def _too_short(scenario: Scenario) -> Iterator[Problem]:
     if scenario.drive != "wheels" or scenario.expect.outcome != "goal":
         return  # the point robot has no speed
-    goal, speed = scenario.goal, scenario.robot.max_speed
-    way = math.dist(scenario.start.position, goal.position) - goal.radius
-    least = way / speed
+    speed = scenario.robot.max_speed
+    at, way = scenario.start.position, 0.0
+    for i, target in enumerate(scenario.targets):  # from centre to centre, less what discs save
+        slack = target.radius * (1 if i == len(scenario.via) else 2)
+        way, at = way + math.dist(at, target.position) - slack, target.position
+    least, past = way / speed, " past the via points" if scenario.via else ""
     for loc, limit in (
         (("limits", "time"), scenario.limits.time),
         (("expect", "max_time"), scenario.expect.max_time),
@@ -89,6 +92,6 @@ def _too_short(scenario: Scenario) -> Iterator[Problem]:
         if limit is not None and limit < least:
             yield Problem(
                 loc,
-                f"{limit:g} s is too short: the straight line of {way:.1f} m to the goal takes "
-                f"{least:.1f} s at {speed:g} m/s",
+                f"{limit:g} s is too short: the straight line of {way:.1f} m to the goal{past} "
+                f"takes {least:.1f} s at {speed:g} m/s",
             )

@@ -6,10 +6,10 @@ The shortest path alone is the truth about its world.
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, SerializerFunctionWrapHandler, model_serializer
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
@@ -53,9 +53,9 @@ class Result(BaseModel):
         decisions: Decisions of the planner.
         time_s: Simulated time (s).
         path_length_m: Length of the driven path (m).
-        shortest_path_m: Length of the robot's shortest path to the goal disc (m); null where there
-            is no way at all, and among more than ``MOST_ROUND`` obstacles, where it is not looked
-            for.
+        shortest_path_m: Length of the robot's shortest path to the goal disc (m), through the discs
+            of the via points (``ground_truth.tour``); null where there is no way at all, and among
+            more than ``MOST_ROUND`` obstacles, where it is not looked for.
         spl: Success weighted by path length, 0 to 1: shortest over driven path, 0 for a run that
             did not reach the goal; null where ``shortest_path_m`` is.
         min_clearance_m: Least distance to anything (m), negative for an overlap; null when there
@@ -70,6 +70,7 @@ class Result(BaseModel):
             for a planner without rules, and where nothing ever came so near.
         digest: Hash of the exact trajectory.
         version: Version of fuzzyq_bullet.
+        via_passed: Via points that were passed; not there in a scenario without any.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -93,6 +94,15 @@ class Result(BaseModel):
     rules_turn: float | None = None
     digest: str
     version: str
+    via_passed: int | None = None
+
+    @model_serializer(mode="wrap")
+    def _without_via(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out ``via_passed`` where there is no via point."""
+        told: dict[str, Any] = handler(self)
+        if self.via_passed is None:
+            told.pop("via_passed", None)
+        return told
 
     def to_dict(self) -> dict[str, str | int | float | None]:
         """Return the result as a flat row: ``pandas.DataFrame([r.to_dict() for r in results])``.
@@ -138,6 +148,7 @@ def result_of(trajectory: Trajectory) -> Result:
         rules_turn=None if turned is None else round(turned, 6),
         digest=trajectory.digest(),
         version=trajectory.version,
+        via_passed=int(trajectory.via_passed[-1]) if scenario.via else None,
     )
 
 

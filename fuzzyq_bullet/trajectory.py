@@ -10,6 +10,7 @@ import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, make_dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
@@ -30,6 +31,7 @@ from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.record_checks import check_collision, check_order
 from fuzzyq_bullet.scenario.expectations import ANY_NAME
 from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.passing import passed_along
 from fuzzyq_bullet.scenario.problems import unknown_names
 from fuzzyq_bullet.untrusted import read_arrays
 from fuzzyq_bullet.version import __version__
@@ -194,6 +196,11 @@ class Trajectory:
         """Return the ticks or the decisions as CSV (docs/record.md); see ``columns.csv_of``."""
         columns = TICKS if group == "ticks" else self.decision_columns
         return csv_of(columns, vars(getattr(self, group)), units=units)
+
+    @cached_property
+    def via_passed(self) -> NDArray[np.int64]:
+        """How many via points were passed by each tick, shape (T,)."""
+        return np.array(passed_along(self.scenario.via, self.ticks.position), dtype=np.int64)
 
     @property
     def decision_columns(self) -> Columns:

@@ -11,6 +11,7 @@ import typer
 from fuzzyq_bullet.cli import (
     bench,
     check,
+    doctor,
     explain,
     export,
     page,
@@ -50,6 +51,7 @@ _add("page", page.page)
 _add("race", race.race)
 _add("export", export.export)
 _add("check", check.check)
+_add("doctor", doctor.doctor)
 _add("import", scenarios.import_map)
 _add("validate", scenarios.validate)
 _add("schema", scenarios.schema)

@@ -12,6 +12,7 @@ from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Motion, Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.passing import Passing
 from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.sensors import CorridorSensor
 from fuzzyq_bullet.shapes import thinnest
@@ -42,6 +43,8 @@ class Driver(ABC):
         )
         self._field, self._radius = world.field, scenario.robot.radius
         self._goal = scenario.goal
+        self._targets = scenario.targets
+        self._passing = Passing(scenario.via, scenario.start.position)
         self._motion = motion
         self.ticks: list[RobotState] = []
         self.steps = 0
@@ -52,6 +55,7 @@ class Driver(ABC):
     def observe(self) -> Observation:
         """Return what the planner may know at the latest tick."""
         now = self.ticks[-1]
+        target = self._targets[self.passed]
         still = self._motion is None  # what has no inertia has no speed that matters
         return Observation(
             time=now.time,
@@ -59,8 +63,8 @@ class Driver(ABC):
             heading=now.heading,
             speed=0.0 if still else now.speed,
             turn_rate=0.0 if still else now.turn_rate,
-            goal=self._goal.position,
-            goal_radius=self._goal.radius,
+            goal=target.position,
+            goal_radius=target.radius,
             range=self._sensor.range,
             radius=self._sensor.radius,
             sensor=self._sensor.at((now.x, now.y)),
@@ -72,7 +76,15 @@ class Driver(ABC):
     def advance(self, decision: Decision) -> None:
         """Carry out one decision until the next one is due, a contact, or the arrival."""
 
+    @property
+    def passed(self) -> int:
+        """How many via points were passed so far."""
+        return self._passing.passed
+
     def _in_goal(self, state: RobotState) -> bool:
+        """Return whether the robot is in the goal, and every via point was passed."""
+        if self.passed < len(self._targets) - 1:
+            return False
         return math.dist((state.x, state.y), self._goal.position) <= self._goal.radius
 
 

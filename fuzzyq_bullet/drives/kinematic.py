@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from fuzzyq_bullet.drives.base import Driver, longest_step_time
+from fuzzyq_bullet.geometry import wrap_angle
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.decision import Decision
@@ -46,7 +47,12 @@ class KinematicDriver(Driver):
             self.collision = Collision(
                 time=self.ticks[-1].time, point=touched, obstacle=index, normal_force=0.0
             )
+        self._passing.move((x, y))
         self.arrived = self._in_goal(self.ticks[-1])
+        if self.arrived and not hit and self._goal.heading is not None:
+            # The point faces any way at once: one more move, that only turns it.
+            self.steps += 1
+            self._record(x, y, wrap_angle(self._goal.heading), 0.0)
 
     def _record(self, x: float, y: float, heading: float, speed: float) -> None:
         self.ticks.append(

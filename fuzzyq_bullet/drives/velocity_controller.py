@@ -51,8 +51,6 @@ class VelocityController:
         """
         robot = self._robot
         error = wrap_angle(decision.heading - heading)
-        stoppable = math.sqrt(robot.turn_acceleration * abs(error))
-        rate = min(TURN_GAIN * abs(error), robot.max_turn_rate, stoppable)
         speed = min(
             # Only what leads towards the new heading counts; more than a quarter turn away from it
             # the robot stands while it turns.
@@ -60,7 +58,14 @@ class VelocityController:
             robot.max_speed,
             self._stoppable_speed(decision.reach - travelled),
         )
-        return Twist(speed, math.copysign(rate, error))
+        return Twist(speed, self.turn_rate(error))
+
+    def turn_rate(self, error: float) -> float:
+        """Return the turn rate to aim for (rad/s) at an error of the heading (rad)."""
+        robot = self._robot
+        stoppable = math.sqrt(robot.turn_acceleration * abs(error))
+        rate = min(TURN_GAIN * abs(error), robot.max_turn_rate, stoppable)
+        return math.copysign(rate, error)
 
     def _stoppable_speed(self, reach: float) -> float:
         """Return the greatest speed from which the robot still stops within ``reach`` (m/s).

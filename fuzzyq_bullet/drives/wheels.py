@@ -12,6 +12,7 @@ from fuzzyq_bullet.drives.velocity_controller import (
     VelocityController,
     limit_acceleration,
 )
+from fuzzyq_bullet.geometry import wrap_angle
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.world import World
@@ -32,6 +33,8 @@ DECISIONS_A_SECOND = 20.0
 
 RESTING_SPEED = 0.01
 RESTING_TURN_RATE = 0.05
+RESTING_ERROR = 0.01
+"""An error of the heading (rad) in the goal that is not turned away any more."""
 
 
 class WheelsDriver(Driver):
@@ -101,17 +104,35 @@ class WheelsDriver(Driver):
         travelled = 0.0
         for _ in range(self._decision_ticks):
             before = self.ticks[-1]
-            wanted = STILL if self._in_goal(before) else twist_at(before.heading, travelled)
+            in_goal = self._in_goal(before)
+            wanted = self._in_the_end(before) if in_goal else twist_at(before.heading, travelled)
             contact = self._drive(wanted)
             self._record()
             now = self.ticks[-1]
+            self._passing.move((now.x, now.y))
             travelled += math.dist((before.x, before.y), (now.x, now.y))
             if contact is not None:
                 self.collision = self._collision(contact)
                 return
-            if self._in_goal(now) and _at_rest(now):
+            if self._in_goal(now) and self._is_done(now):
                 self.arrived = True
                 return
+
+    def _in_the_end(self, state: RobotState) -> Twist:
+        """Return the twist to aim for in the goal: to stop, and to turn to its heading."""
+        off = self._off_heading(state)
+        return STILL if abs(off) < RESTING_ERROR else Twist(0.0, self._controller.turn_rate(off))
+
+    def _is_done(self, state: RobotState) -> bool:
+        """Return whether the robot, in the goal, is as it is asked to be."""
+        if not self._goal.stop:
+            return True
+        return _at_rest(state) and abs(self._off_heading(state)) <= self._goal.tolerance
+
+    def _off_heading(self, state: RobotState) -> float:
+        """Return the turn (rad) that is left to the goal's heading; 0 if it asks for none."""
+        heading = self._goal.heading
+        return 0.0 if heading is None else wrap_angle(heading - state.heading)
 
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""

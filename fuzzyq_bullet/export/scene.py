@@ -56,9 +56,12 @@ def stamp(time: int) -> Timestamp:
 
 
 def world_entities(scenario: Scenario) -> SceneUpdate:
-    """Return all that stands still: each obstacle, the walls, the goal."""
+    """Return all that stands still: each obstacle, the walls, via points, the goal."""
     walls = meshes.walls_of(scenario, meshes.EVERYWHERE)
     entities = [_entity("goal", solids=[meshes.goal_disc(scenario)])]
+    for index, via in enumerate(scenario.via):
+        disc = meshes.disc(via.position, via.radius)
+        entities.append(_entity(f"via[{index}]", solids=[disc], about={"number": index + 1}))
     if walls:
         wall = meshes.prisms(walls, 0.0, WALL_HEIGHT, style.WALL)
         entities.append(_entity("walls", solids=[wall]))

@@ -105,6 +105,12 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     start.set(fc="white", ec=INK, lw=1.4, zorder=3)
     axes.add_patch(start)
     goal = scenario.goal
+    for number, via in enumerate(scenario.via, 1):
+        axes.add_patch(Circle(via.position, via.radius, fc="none", ec=GREEN, lw=1.2, zorder=3))
+        axes.annotate(str(number), via.position, color=GREEN, ha="center", va="center", zorder=8)
+    if goal.heading is not None:
+        nose = arrow(goal.position, goal.heading, 1.5 * goal.radius)
+        axes.add_patch(Polygon(nose, fc="none", ec=GREEN, lw=1.2, zorder=8))
     axes.add_patch(Circle(goal.position, goal.radius, fc=_GOAL_FACE, ec="none", zorder=3))
     # Its rim is seen through the robot that came to rest there.
     axes.add_patch(Circle(goal.position, goal.radius, fc="none", ec=GREEN, lw=2.0, zorder=8))

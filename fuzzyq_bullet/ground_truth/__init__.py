@@ -15,13 +15,14 @@ Nothing that drives or plans may import this package.
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth.configuration_space import ConfigurationSpace
 from fuzzyq_bullet.ground_truth.search import is_connected, shortest_route
 from fuzzyq_bullet.ground_truth.tangent_graph import Route
+from fuzzyq_bullet.ground_truth.tour import Disc, tour
 from fuzzyq_bullet.quantities import Point
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.places import Arena
@@ -37,8 +38,7 @@ class _Question(NamedTuple):
     obstacles: tuple[Obstacle, ...]
     arena: Arena
     start: Point
-    goal: Point
-    goal_radius: float
+    discs: tuple[Disc, ...]
     radius: float
 
     @classmethod
@@ -50,10 +50,8 @@ class _Question(NamedTuple):
             )
         if not (math.isfinite(radius) and radius > 2 * GRAZE):
             raise ValueError(f"the radius must be positive and finite, got {radius}")
-        start, goal = scenario.start, scenario.goal
-        return cls(
-            scenario.obstacles, scenario.arena, start.position, goal.position, goal.radius, radius
-        )
+        discs = tuple((one.position, one.radius) for one in scenario.targets)
+        return cls(scenario.obstacles, scenario.arena, scenario.start.position, discs, radius)
 
     def space(self) -> ConfigurationSpace:
         return ConfigurationSpace(Field.of(self.obstacles, self.arena), self.radius)
@@ -61,6 +59,9 @@ class _Question(NamedTuple):
 
 def shortest_path(scenario: Scenario, radius: float | None = None) -> Route | None:
     """Return the shortest way of a disc from the start to the goal disc; None if there is none.
+
+    With via points it leads through their discs, in their order (``ground_truth.tour``); it is then
+    the shortest way among its neighbours, not proven to be the shortest of all.
 
     Answers are remembered by geometry alone: planner, seed, drive and names make no difference.
 
@@ -80,6 +81,8 @@ def shortest_path(scenario: Scenario, radius: float | None = None) -> Route | No
 
 def feasible(scenario: Scenario, radius: float | None = None) -> bool:
     """Return whether there is any way of a disc from the start to the goal disc.
+
+    With via points, whether there is one to the disc of each, and on from its centre.
 
     Cheaper than ``shortest_path`` where there is one: it stops at the first way it finds.
 
@@ -112,12 +115,16 @@ def spl(success: bool, shortest: float, driven: float) -> float:
 
 @lru_cache(maxsize=_REMEMBERED)
 def _route(asked: _Question) -> Route | None:
-    return shortest_route(asked.space(), asked.start, asked.goal, asked.goal_radius)
+    space = asked.space()
+    return tour(partial(shortest_route, space), asked.start, asked.discs)
 
 
 @lru_cache(maxsize=_REMEMBERED)
 def _is_feasible(asked: _Question) -> bool:
-    return is_connected(asked.space(), asked.start, asked.goal, asked.goal_radius)
+    space = asked.space()
+    begins = (asked.start, *(centre for centre, _ in asked.discs))
+    legs = zip(begins, asked.discs, strict=False)
+    return all(is_connected(space, begin, centre, radius) for begin, (centre, radius) in legs)
 
 
 __all__ = ["GRAZE", "Route", "feasible", "shortest_path", "spl"]

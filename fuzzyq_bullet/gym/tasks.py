@@ -17,6 +17,7 @@ from fuzzyq_bullet.scenario import (
     realise,
     with_options,
 )
+from fuzzyq_bullet.scenario.fields import refuse_via
 from fuzzyq_bullet.training.tasks import FIRST_SEED, ROOM
 
 Count: TypeAlias = "int | tuple[int, int]"
@@ -58,6 +59,7 @@ class TaskSource:
             scenario if isinstance(scenario, Scenario) else load_scenario(scenario, policies=False)
         )
         check(given)
+        refuse_via(given, "the reward of an environment knows the way to the goal alone")
         self._fixed = with_options(given, drive=drive)
 
     def draw(self, rng: np.random.Generator) -> Scenario:

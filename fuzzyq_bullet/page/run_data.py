@@ -76,6 +76,7 @@ def _field(trajectory: Trajectory) -> dict[str, Any]:
         "extent": [_number(edge) for edge in extent_of(trajectory)],
         "start": list(scenario.start.position),
         "goal": {"position": list(scenario.goal.position), "radius": scenario.goal.radius},
+        "via": [{"position": list(one.position), "radius": one.radius} for one in scenario.via],
         "obstacles": [
             {"corners": _numbers(points, 3), "radius": _number(radius)} for points, radius in solids
         ],

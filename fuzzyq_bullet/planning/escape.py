@@ -63,6 +63,7 @@ class Escape:
         self._since = 0.0
         self._straight = False
         self._mark = math.nan
+        self._goal: Point | None = None
 
     def choose_by(self, judge: Judge) -> None:
         """Let somebody else judge ways out from now on."""
@@ -75,6 +76,8 @@ class Escape:
             observation: What is observed.
             breakout_at: c_f, in units of S_p.
         """
+        if observation.goal != self._goal:
+            self._begin(observation)
         goal = towards_goal(observation)
         here, to_goal = observation.position, goal.distance
         [middle] = observation.sense([goal.bearing])
@@ -109,6 +112,17 @@ class Escape:
         # The line that ended the avoidance is driven as it is. The controller takes over when the
         # robot is nearer than ever before.
         return goal._replace(exact=self._straight)
+
+    def _begin(self, observation: Observation) -> None:
+        """Take up another goal: what was seen stays, what was chosen and tried for the last not."""
+        if self._goal is not None:
+            self._frontier, self._follower = None, PathFollower([])
+            self._failed, self._left = [], []
+            self._nearest, self._since = math.inf, observation.time
+            self._straight, self._mark = False, math.nan
+            self._graph.pass_by(observation.position)
+            self._graph.seek(observation.goal)
+        self._goal = observation.goal
 
     def _scan(self, observation: Observation) -> None:
         """Scan all around, and choose the frontier to go to."""

@@ -111,6 +111,7 @@ class ExplorationGraph:
         self._blacklist: list[Point] = []
         self._corners_too = False
         self._joined = False
+        self._sought: Frontier | None = None
         self.leads_to_goal = False
 
     def begin_again(self) -> None:
@@ -123,6 +124,22 @@ class ExplorationGraph:
         index = len(self._nodes) - 1
         distance = math.dist(self._nodes[index].point, goal)
         self._frontiers.append(Frontier(index, goal, 0.0, distance, goal))
+
+    def seek(self, goal: Point) -> None:
+        """Take up another goal (m). If a way to it is known, it is a frontier with no way on."""
+        if self._sought is not None:
+            self._frontiers = [one for one in self._frontiers if one is not self._sought]
+            self._sought = None
+        lengths = shortest_paths(self._nodes)[0]
+        known = [
+            (lengths[index] + apart, index, apart)
+            for index, node in enumerate(self._nodes)
+            if (apart := math.dist(node.point, goal)) <= NEAR or node.sees(goal)
+        ]
+        if known:
+            _, index, apart = min(known)
+            self._sought = Frontier(index, goal, 0.0, apart, goal)
+            self._frontiers.append(self._sought)
 
     def pass_by(self, here: Point) -> None:
         """Add the path driven so far, up to a position (m)."""

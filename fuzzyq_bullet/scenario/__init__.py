@@ -14,7 +14,7 @@ from fuzzyq_bullet.scenario.files import (
 from fuzzyq_bullet.scenario.layouts import Random, realise
 from fuzzyq_bullet.scenario.models import Drive, Limits, Scenario, scenario_schema
 from fuzzyq_bullet.scenario.options import cellular_task, random_task, with_options
-from fuzzyq_bullet.scenario.places import Arena, Goal, Start
+from fuzzyq_bullet.scenario.places import Arena, Goal, Start, Via
 from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
@@ -34,6 +34,7 @@ __all__ = [
     "Robot",
     "Scenario",
     "Start",
+    "Via",
     "bundled_scenarios",
     "cellular_task",
     "check",

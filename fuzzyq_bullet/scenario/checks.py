@@ -18,7 +18,7 @@ from fuzzyq_bullet.problems import MAX_SHOWN, Loc, key_path
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
-from fuzzyq_bullet.scenario.places import Arena, Bounds
+from fuzzyq_bullet.scenario.places import Arena, Bounds, Goal, Start, Via
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.shapes.motion import STILL
 
@@ -29,11 +29,12 @@ def find_conflicts(scenario: Scenario) -> list[Conflict]:
     """Return what stands in the way of running the scenario: places and messages, none if well.
 
     Conflicts are: start or goal outside the arena; the robot's disc at the start, or at the centre
-    of the goal, touching a wall or an obstacle; a start within the goal (a run of no steps, with
-    no shortest path to measure it by); an obstacle wholly outside the walls; obstacles to be drawn
-    that are too large for the arena or too many; an obstacle that moves; a sensor that
-    sees less far than the longest step of the controller. Obstacles may overlap each other and poke
-    through walls.
+    of the goal or of a via point, touching a wall or an obstacle; a start within the first via
+    point, or within the goal if there is none (a run of no steps, with no shortest path to measure
+    it by); a via point around the centre of the one before it; an obstacle wholly outside the
+    walls; obstacles to be drawn that are too large for the arena or too many; an obstacle that
+    moves; a sensor that sees less far than the longest step of the controller. Obstacles may
+    overlap each other and poke through walls.
     """
     return [
         *_places(scenario),
@@ -61,20 +62,22 @@ def check(scenario: Scenario) -> None:
 def _places(scenario: Scenario) -> list[Conflict]:
     found: list[Conflict] = []
     left, bottom, right, top = scenario.arena.bounds
-    for key, place in (("start", scenario.start), ("goal", scenario.goal)):
+    for _, key, place in _named(scenario):
         x, y = place.position
         gap = min(x - left, right - x, y - bottom, top - y)
         if gap < 0.0:
-            found.append(((key, "position"), f"({x:g}, {y:g}) is outside {_named(scenario.arena)}"))
+            found.append(
+                ((*key, "position"), f"({x:g}, {y:g}) is outside {_in_words(scenario.arena)}")
+            )
         elif scenario.arena.walls and gap <= scenario.robot.radius + TOUCH:
             found.append(
                 (
-                    (key, "position"),
+                    (*key, "position"),
                     f"is {gap:.3g} m from a wall; {_remedy(gap, scenario.robot.radius)}",
                 )
             )
     apart = float(np.hypot(*np.subtract(scenario.start.position, scenario.goal.position)))
-    if apart <= scenario.goal.radius:
+    if not scenario.via and apart <= scenario.goal.radius:
         found.append(
             (
                 ("start", "position"),
@@ -82,13 +85,37 @@ def _places(scenario: Scenario) -> list[Conflict]:
                 f"{scenario.goal.radius:g} m",
             )
         )
+    for i, via in enumerate(scenario.via):
+        before = scenario.via[i - 1] if i else scenario.start
+        apart = math.dist(before.position, via.position)
+        if apart <= via.radius:
+            found.append(
+                (
+                    ("via", i, "position"),
+                    f"is passed at once: its centre is {apart:.3g} m from that of "
+                    f"{f'via[{i - 1}]' if i else 'the start'}, its radius {via.radius:g} m",
+                )
+            )
     return found
+
+
+def _named(scenario: Scenario) -> list[tuple[str, Loc, Start | Via | Goal]]:
+    """Return the places of a scenario, with what they are called and where their keys are."""
+    via: list[tuple[str, Loc, Start | Via | Goal]] = [
+        (f"via point {i + 1}", ("via", i), one) for i, one in enumerate(scenario.via)
+    ]
+    ends: list[tuple[str, Loc, Start | Via | Goal]] = [
+        ("start", ("start",), scenario.start),
+        ("goal", ("goal",), scenario.goal),
+    ]
+    return [*ends, *via]
 
 
 def _obstacles(scenario: Scenario) -> list[Conflict]:
     field, radius = Field.of(scenario.obstacles), scenario.robot.radius
     by_index: dict[int, Conflict] = {}
-    for name, place in (("goal", scenario.goal), ("start", scenario.start)):
+    # Of several places in one obstacle the start is told, then the goal.
+    for name, _, place in reversed(_named(scenario)):
         x, y = place.position
         gaps = field.distances(place.position)
         for i in np.flatnonzero(gaps <= radius + TOUCH).tolist():
@@ -101,7 +128,7 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
             if _is_outside(item, scenario.arena.bounds):
                 by_index[i] = (
                     ("obstacles", i, "position"),
-                    f"is wholly outside the walls of {_named(scenario.arena)}",
+                    f"is wholly outside the walls of {_in_words(scenario.arena)}",
                 )
     return [by_index[i] for i in sorted(by_index)]
 
@@ -138,7 +165,7 @@ def _random(scenario: Scenario) -> list[Conflict]:
     return [(("random", *loc), why) for loc, why in scenario.random.conflicts(scenario)]
 
 
-def _named(arena: Arena) -> str:
+def _in_words(arena: Arena) -> str:
     """Say where the arena is."""
     width, depth = arena.size
     where = f" from ({arena.origin[0]:g}, {arena.origin[1]:g})" if any(arena.origin) else ""

@@ -16,6 +16,16 @@ def field_digest(scenario: Scenario) -> str:
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:32]
 
 
+def refuse_via(scenario: Scenario, why: str) -> None:
+    """Make sure that a scenario leads straight to its goal, where nothing else is understood.
+
+    Raises:
+        UserError: If it has via points.
+    """
+    if scenario.via:
+        raise UserError(f"{scenario.name}: via: {why}; leave out the via points")
+
+
 def refuse_other_field(scenario: Scenario) -> None:
     """Make sure that what the planner of a realised scenario has learned was learned there.
 
@@ -23,6 +33,8 @@ def refuse_other_field(scenario: Scenario) -> None:
         UserError: If it was learned in another field, or cannot be used.
     """
     policy = field_policy(scenario.planner)
+    if policy is not None:
+        refuse_via(scenario, "a policy of a field tells the time to its goal alone")
     if policy is not None and policy.scenario != field_digest(scenario):
         raise UserError(
             f"{getattr(scenario.planner, 'policy', None)}: was learned in another field: arena, "

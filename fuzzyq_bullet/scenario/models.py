@@ -21,6 +21,7 @@ from pydantic import (
     ValidatorFunctionWrapHandler,
     WrapValidator,
     field_serializer,
+    model_serializer,
 )
 from pydantic.json_schema import models_json_schema
 from pydantic_core import PydanticCustomError
@@ -41,7 +42,7 @@ from fuzzyq_bullet.scenario.expectations import (
     expect_model,
 )
 from fuzzyq_bullet.scenario.layouts import AnyLayout
-from fuzzyq_bullet.scenario.places import Arena, Goal, Start
+from fuzzyq_bullet.scenario.places import Arena, Goal, Start, Via
 from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.sensors.base import SENSORS, AnySensor, ExactSensor, SensorModel
 from fuzzyq_bullet.shapes import Obstacle
@@ -67,6 +68,8 @@ def _default_planner() -> PlannerSettings:
 
 _AT_REST = STILL.model_dump()
 _LONGEST_NAME = 100
+MAX_VIA = 100
+"""Most via points of a scenario."""
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
@@ -129,6 +132,9 @@ class Scenario(Model):
     )
     arena: Arena = Arena()
     start: Start
+    via: tuple[Via, ...] = Field(
+        default=(), max_length=MAX_VIA, description="To be passed before the goal, in this order."
+    )
     goal: Goal
     robot: Robot = Robot()
     sensor: Annotated[AnySensor, WrapValidator(_choose_sensor)] = Field(
@@ -173,6 +179,9 @@ class Scenario(Model):
             update={
                 "arena": self.arena.model_copy(update={"origin": there(self.arena.origin)}),
                 "start": self.start.model_copy(update={"position": there(self.start.position)}),
+                "via": tuple(
+                    one.model_copy(update={"position": there(one.position)}) for one in self.via
+                ),
                 "goal": self.goal.model_copy(update={"position": there(self.goal.position)}),
                 "obstacles": tuple(one.moved(x, y, 0.0) for one in self.obstacles),
                 "random": None if self.random is None else self.random.moved(x, y),
@@ -184,12 +193,25 @@ class Scenario(Model):
         """Longest distance that a detection line tells (m): 5·S_p unless ``sensor`` says more."""
         return self.sensor.range_on(self.robot.spec)
 
+    @model_serializer(mode="wrap")
+    def _without_via(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out that nothing is to be passed."""
+        told: dict[str, Any] = handler(self)
+        if not self.via:
+            told.pop("via", None)
+        return told
+
+    @property
+    def targets(self) -> tuple[Via | Goal, ...]:
+        """The via points in their order, then the goal."""
+        return (*self.via, self.goal)
+
     def start_heading(self) -> float:
-        """Return the heading at the start (rad); towards the goal when none is given."""
+        """Return the heading at the start (rad); towards the first target by default."""
         if self.start.heading is not None:
             return self.start.heading
-        dx = self.goal.position[0] - self.start.position[0]
-        dy = self.goal.position[1] - self.start.position[1]
+        dx = self.targets[0].position[0] - self.start.position[0]
+        dy = self.targets[0].position[1] - self.start.position[1]
         return math.atan2(dy, dx)
 
 

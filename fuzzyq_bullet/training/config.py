@@ -16,6 +16,7 @@ from fuzzyq_bullet.learning.policy import MAX_WORDS
 from fuzzyq_bullet.learning.training import MAX_EPISODES
 from fuzzyq_bullet.planning import planner_names, settings_for
 from fuzzyq_bullet.scenario import load_scenario, realise
+from fuzzyq_bullet.scenario.fields import refuse_via
 from fuzzyq_bullet.scenario.models import Drive
 from fuzzyq_bullet.training.field import FieldTask
 from fuzzyq_bullet.training.options import AS_USUAL, LearningOptions
@@ -178,6 +179,7 @@ def tasks_for(config: TrainingConfig) -> Tasks | FieldTask:
     own = config.definition or getattr(asked.planner, "rules", None)
     given = {"rules": own} if recipe.with_rules and isinstance(own, ControllerDefinition) else {}
     settings = settings_for(config.planner).model_validate({"name": config.planner, **given})
+    refuse_via(asked, "a training knows the way to the goal alone")
     asked = asked.model_copy(update={"planner": settings})
     if recipe.in_field is not None:
         field = realise(asked, config.seed)

@@ -13,7 +13,8 @@ from fuzzyq_bullet.rules_turn import asked, controller_turns
 from fuzzyq_bullet.video.timeline import NO_DECISION, sensor_range
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Decisions, Trajectory
+    from fuzzyq_bullet.quantities import Point
+from fuzzyq_bullet.trajectory import Decisions, Trajectory
 
 STRAIGHT = math.radians(5.0)
 """A heading no farther off the aim is called straight to it (rad)."""
@@ -63,12 +64,24 @@ def is_asked(decisions: Decisions, index: int) -> bool:
 
 
 def aim_name(trajectory: Trajectory, index: int) -> str:
-    """Return what a decision aims at, in words: the goal, or the way out."""
+    """Return what a decision aims at, in words: goal, via point, or the way out."""
+    name, position = target_of(trajectory, index)
     aim = trajectory.decisions.aim[index].tolist()
     routine = MODES[int(trajectory.decisions.mode[index])] == "routine"
     if routine or not math.isfinite(sum(aim)):
-        return "the goal"
-    return "the goal" if math.dist(aim, trajectory.scenario.goal.position) < 1e-9 else "the way out"
+        return name
+    return name if math.dist(aim, position) < 1e-9 else "the way out"
+
+
+def target_of(trajectory: Trajectory, index: int) -> tuple[str, Point]:
+    """Return the target of a decision: what it is called, and where it is (m)."""
+    scenario, tick = trajectory.scenario, int(trajectory.decisions.tick[index])
+    if scenario.via:
+        passed = int(trajectory.via_passed[tick])
+        if passed < len(scenario.via):
+            name = f"via point {passed + 1} of {len(scenario.via)}"
+            return name, scenario.via[passed].position
+    return "the goal", scenario.goal.position
 
 
 def off_aim(trajectory: Trajectory, index: int) -> float:
@@ -79,7 +92,7 @@ def off_aim(trajectory: Trajectory, index: int) -> float:
         x, y = trajectory.ticks.position[int(decisions.tick[index])].tolist()
         aim = decisions.aim[index].tolist()
         known = math.isfinite(sum(aim))
-        aim_x, aim_y = aim if known else trajectory.scenario.goal.position
+        aim_x, aim_y = aim if known else target_of(trajectory, index)[1]
         towards = math.atan2(aim_y - y, aim_x - x)
     return math.remainder(float(decisions.heading[index]) - towards, math.tau)
 
@@ -118,8 +131,8 @@ def _steers(trajectory: Trajectory, index: int) -> str:
     if waits := _waits(trajectory, index, lean):
         return waits
     if unasked:
-        if name == "the goal":
-            return f"Line to the goal leads on ({middle:.1f} m): {_leads(lean, name)}"
+        if name != "the way out":
+            return f"Line to {name} leads on ({middle:.1f} m): {_leads(lean, name)}"
         return "Aims at a gap on the way out: the rules are not asked"
     if is_clear(decisions, index):
         return f"Way is clear: {_leads(lean, name)}"

@@ -11,7 +11,7 @@ from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.footprints import Floats, arrow
 from fuzzyq_bullet.video.legend import legend, note
-from fuzzyq_bullet.video.marks import began, cross, diamond, left_off, reticle
+from fuzzyq_bullet.video.marks import began, cross, diamond, left_off, passed, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.plan import Plan
 from fuzzyq_bullet.video.style import MAP, Rect
@@ -70,6 +70,8 @@ class Map:
         self._struck = self._outline_struck(trajectory)
         self._avoided: int | None = None
         self._marked = 0
+        self._via, self._via_passed = trajectory.scenario.via, trajectory.via_passed
+        self._passed = 0
         self._aim: tuple[float, float] | None = None
         self._steady = Steady(self._scale)
         self._sensed: Sensed | None = None
@@ -86,6 +88,7 @@ class Map:
             [
                 self._trail.follow(moment.tick),
                 self._decorate(moment.decision),
+                self._mark_passed(moment.tick),
                 self._point_at(None if sensed is None else self._apart(sensed, sensed.aim)),
             ]
         )
@@ -141,6 +144,14 @@ class Map:
             outline = None if avoided is None else self._outline(avoided)
             changed.append(self._trail.lay_below(outline))
         return paint.joined(changed)
+
+    def _mark_passed(self, tick: int) -> paint.Box | None:
+        """Mark the via points that were passed by a tick."""
+        before, self._passed = self._passed, int(self._via_passed[tick])
+        return paint.joined(
+            self._trail.lay_above(passed(self.spot([one.position])[0], self._rect.size, self._unit))
+            for one in self._via[before : self._passed]
+        )
 
     def _apart(
         self, sensed: Sensed, point: tuple[float, float] | None

@@ -60,6 +60,11 @@ def began(at: ArrayLike, size: tuple[int, int], unit: float = 1.0) -> list[paint
     return _discs(at, size, unit, ((style.PAGE, 6.0, 0.0), (style.TARGET, 4.6, 0.0)))
 
 
+def passed(at: ArrayLike, size: tuple[int, int], unit: float = 1.0) -> list[paint.Inked]:
+    """Return the mark of a via point that was passed: a dot of the goal's colour."""
+    return _discs(at, size, unit, ((style.PAGE, 11.0, 0.0), (style.GOAL, 9.6, 0.0)))
+
+
 def left_off(at: ArrayLike, size: tuple[int, int], unit: float = 1.0) -> list[paint.Inked]:
     """Return the mark of the place where the routine part went on again: a ring."""
     rim = (style.PAGE, 8.4, 5.2)

@@ -113,8 +113,12 @@ def flag(position: tuple[float, float], lens: Lens, scale: float) -> Mesh:
 
 def goal_disc(scenario: Scenario) -> Mesh:
     """Return the goal as a thin disc on the ground."""
-    goal = scenario.goal
-    return prisms([np.add(goal.position, goal.radius * _CIRCLE)], 0.0, 0.01, style.GOAL)
+    return disc(scenario.goal.position, scenario.goal.radius)
+
+
+def disc(position: tuple[float, float], radius: float) -> Mesh:
+    """Return a thin disc of the goal's colour on the ground; ``radius`` is in metres."""
+    return prisms([np.add(position, radius * _CIRCLE)], 0.0, 0.01, style.GOAL)
 
 
 def pole(position: tuple[float, float], height: float) -> Mesh:

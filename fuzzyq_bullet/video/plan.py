@@ -96,6 +96,26 @@ class Plan:
             width = round(2 * unit * at.factor)
             pen.ellipse(at.disc(centre, radius), outline=255, width=width)
 
+        def via(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            for number, one in enumerate(scenario.via, 1):
+                centre = self.spot([one.position])[0]
+                radius = max(7.0 * unit, one.radius * self.scale)
+                width = round(2 * unit * at.factor)
+                pen.ellipse(at.disc(centre, radius), outline=255, width=width)
+                size = 14 * unit * at.factor
+                pen.text(at([centre])[0], str(number), fill=255, font_size=size, anchor="mm")
+
+        def facing(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+            x, y = scenario.goal.position
+            heading = scenario.goal.heading or 0.0
+            long = 2.0 * max(scenario.goal.radius, 7.0 * unit / self.scale)
+            reach = [(long, 0.0), (0.6 * long, 0.25 * long), (0.6 * long, -0.25 * long)]
+            cos, sin = math.cos(heading), math.sin(heading)
+            tip, *barbs = [(x + a * cos - b * sin, y + a * sin + b * cos) for a, b in reach]
+            width = round(2.5 * unit * at.factor)
+            for begin in ((x, y), *barbs):
+                pen.line(at(self.spot([begin, tip])), 255, width)
+
         goal_at = self.spot([scenario.goal.position])[0]
         goal_radius = max(7.0 * unit, scenario.goal.radius * self.scale)
 
@@ -112,6 +132,10 @@ class Plan:
         layers = [(ground, style.GROUND), (grid, style.GRID), (obstacles, style.OBSTACLE)]
         if scenario.arena.walls:
             layers.append((walls, style.WALL))
+        if scenario.via:
+            layers.append((via, style.GOAL))
+        if scenario.goal.heading is not None:
+            layers.append((facing, style.GOAL))
         for draw, colour in [*layers, (start, style.FAINT), (goal, style.GOAL), (flag, style.GOAL)]:
             layer = paint.mask(field, draw)
             image.paste(colour, (field[0], field[1]), layer)

@@ -283,6 +283,11 @@ def _decorated(
             for part in np.linspace(0.0, 1.0, 4):
                 pen.polygon(scaled(seen(outline + np.array((0.10, 0.14)) * part)), fill=140)
 
+    def via(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
+        for one in scenario.via:
+            around = scaled(ring(one.position, one.radius))
+            pen.line(around, 255, round(2 * unit * scaled.factor), joint="curve")
+
     def goal(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
         around = scaled(ring(scenario.goal.position, scenario.goal.radius))
         pen.polygon(around, fill=110)
@@ -296,6 +301,7 @@ def _decorated(
         (grid, style.GRID),
         (shadows, style.SHADOW),
         (start, style.FAINT),
+        (via, style.GOAL),
         (goal, style.GOAL),
     ):
         image.paste(tint, mask=ImageChops.multiply(paint.mask(box, draw), ground))

@@ -113,6 +113,10 @@ export class Field {
       pen.strokeRect(left, top, right - left, bottom - top);
     }
     pen.strokeStyle = colour.goal;
+    for (const { position, radius } of this.run.data.field.via ?? []) {
+      disc(pen, this.at(...position), Math.max(radius * this.scale, 8 * this.marks));
+      pen.stroke();
+    }
     pen.lineWidth = 3;
     const there = this.at(...goal.position);
     const goalRadius = Math.max(goal.radius * this.scale, 8 * this.marks);

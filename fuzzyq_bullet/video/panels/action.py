@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.explanation import aim_name, off_aim
+from fuzzyq_bullet.video.explanation import aim_name, off_aim, target_of
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.style import ACTION
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
@@ -48,7 +48,8 @@ class Action:
         card.paste(style.LINE, mask=paint.mask((0, 0, *ACTION.size), _dial_face))
         paint.write(card, (14, 199), "step", style.MUTED, 17)
         last = "" if self._weighted else "known free"
-        names = ("speed", "distance to goal", "nearest thing", last)
+        far = "to next target" if trajectory.scenario.via else "distance to goal"
+        names = ("speed", far, "nearest thing", last)
         for row, name in enumerate(names):
             paint.write(card, (_FACTS, 40 + _ROW * row), name, style.MUTED, 16)
         if self._weighted:
@@ -66,7 +67,8 @@ class Action:
             step = float(self._decisions.step[index])
             turn = math.radians(round(math.degrees(off_aim(self._trajectory, index))))
             name = aim_name(self._trajectory, index)
-        away = math.dist(moment.position, self._goal)
+        target = self._goal if index == NO_DECISION else target_of(self._trajectory, index)[1]
+        away = math.dist(moment.position, target)
         facts = (
             f"{abs(moment.speed):.2f} m/s",
             f"{away:.2f} m" if away < 100 else f"{away:.0f} m",
