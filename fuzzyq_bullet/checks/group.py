@@ -16,6 +16,7 @@ from pydantic import BaseModel
 from fuzzyq_bullet.checks.verdict import AGAIN, MARKS, Status, Verdict
 from fuzzyq_bullet.errors import printable
 from fuzzyq_bullet.studies.statistics import Share, share
+from fuzzyq_bullet.wording import plain
 
 Nature: TypeAlias = Literal["steady", "flaky", "broken"]
 
@@ -43,6 +44,7 @@ class Group(BaseModel):
         high: Upper end.
         mean_time_s: Mean simulated time of the runs that passed (s); None if none did.
         worst: Name of the worst run: see ``badness``.
+        worst_why: Why it did not pass, a line each.
         replay: The command that drives the worst run again.
         line: The line of the file that the worst run is about.
         why: Why the group did not pass, a line each.
@@ -63,6 +65,7 @@ class Group(BaseModel):
     high: float
     mean_time_s: float | None
     worst: str
+    worst_why: list[str]
     replay: str
     line: int
     why: list[str] = []
@@ -72,7 +75,7 @@ class Group(BaseModel):
 
 
 def badness(verdict: Verdict) -> tuple[float, ...]:
-    """Return how bad a run was; the worst is the greatest, and of equals the one with the first seed.
+    """Return how bad a run was: the worst is the greatest, and of equals the first.
 
     A run that did not come to an end is worse than one that failed, and that is worse than one that
     passed. Then by outcome: collision, stuck, timeout, any other. Then the one with less clearance,
@@ -120,7 +123,7 @@ def group_of(name: str, verdicts: Sequence[Verdict]) -> Group:
         )
     elif rate is not None and passed / len(verdicts) < rate:
         status = "failed"
-        why.append(f"{passed} of {len(verdicts)} pass, expected a share of {rate:g} or more")
+        why.append(f"pass_rate {plain(passed / len(verdicts), 3)}, expected {rate:g} or more")
     worst = worst_of(verdicts)
     times = [v.result.time_s for v in verdicts if v.result is not None and v.status == "passed"]
     digests = [verdict.result.digest if verdict.result else "" for verdict in verdicts]
@@ -137,6 +140,7 @@ def group_of(name: str, verdicts: Sequence[Verdict]) -> Group:
         high=found.high,
         mean_time_s=round(sum(times) / len(times), 6) if times else None,
         worst=worst.name,
+        worst_why=worst.why,
         replay=worst.replay,
         line=worst.line,
         why=why,
@@ -162,10 +166,10 @@ def _notes(found: Share, rate: float | None, digests: Sequence[str]) -> list[str
     if rate is None or rate >= 1.0:  # no number of runs can prove that all pass
         return []
     if found.value >= rate > found.low:
-        enough = math.ceil(_Z2 * rate / (1.0 - rate))
+        enough = f"{math.ceil(_Z2 * rate / (1.0 - rate))} runs that all pass would do"
         return [
             f"too few runs to be sure of {rate:g}: the interval begins at {found.low:.2f}; "
-            f"{enough} runs that all pass would do"
+            + (enough if found.number == found.of else "more runs would tell")
         ]
     if found.value < rate <= found.high:
         return [
@@ -175,14 +179,20 @@ def _notes(found: Share, rate: float | None, digests: Sequence[str]) -> list[str
     return []
 
 
-def group_lines(group: Group) -> list[str]:
-    """Return the line of a group's verdict and, beneath it, why, what to note, and the worst run."""
-    line = f"{MARKS[group.status]:<5} {group.name}  {in_words(group)}"
+def group_lines(group: Group, width: int = 0) -> list[str]:
+    """Return the line of a group's verdict and, beneath it, why, notes, and the worst run.
+
+    Args:
+        group: The verdict on all.
+        width: Width of the column of names.
+    """
+    line = f"{MARKS[group.status]:<5} {group.name:<{width}}  {in_words(group)}"
     lines = [line, *(f"      {reason}" for reason in group.why)]
     lines += [f"      note: {note}" for note in group.notes]
     lines += [f"      changed: {change}" for change in group.changes]
     if group.nature != "steady" or group.status != "passed":
-        lines.append(f"      worst: {group.worst}")
+        why = "; ".join(group.worst_why)
+        lines.append(f"      worst: {group.worst}{': ' if why else ''}{why}")
         lines += [AGAIN + group.replay] if group.replay else []
     return [printable(line) for line in lines]
 
@@ -190,10 +200,9 @@ def group_lines(group: Group) -> list[str]:
 def in_words(group: Group) -> str:
     """Say how many runs pass: ``flaky: 17 of 20 pass, 95 % interval 0.64 to 0.95``."""
     nature = "" if group.nature == "steady" else f"{group.nature}: "
-    wanted = "" if group.pass_rate is None else f", expected {group.pass_rate:g}"
     return (
         f"{nature}{group.passed} of {group.runs} pass, "
-        f"95 % interval {group.low:.2f} to {group.high:.2f}{wanted}"
+        f"95 % interval {group.low:.2f} to {group.high:.2f}"
     )
 
 

@@ -183,9 +183,13 @@ def group_commands(group: Group, verdicts: Sequence[Verdict]) -> list[str]:
         verdicts: The runs.
     """
     told = []
-    worst = next(verdict for verdict in verdicts if verdict.name == group.worst)
     if group.status != "passed":
-        lines = [in_words(group), *group.why, *(f"worst: {why}" for why in worst.why), group.replay]
+        lines = [
+            in_words(group),
+            *group.why,
+            *(f"worst: {why}" for why in group.worst_why),
+            group.replay,
+        ]
         told.append(_command("error", group.file, group.line, group.name, "\n".join(lines)))
     for warning in dict.fromkeys(one for verdict in verdicts for one in verdict.warnings):
         placed = _PLACE.match(warning)

@@ -180,7 +180,7 @@ def _printer(*, json: bool, github: bool, width: int, member: bool) -> Callable[
 
     def show(one: Verdict | Group, members: Sequence[Verdict] = ()) -> None:
         if isinstance(one, Group):
-            lines, commands = group_lines(one), group_commands(one, members)
+            lines, commands = group_lines(one, width), group_commands(one, members)
         else:
             lines = lines_of(one, width, member=member)
             commands = [] if member else verdict_commands(one)
