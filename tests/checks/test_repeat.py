@@ -27,7 +27,7 @@ goal: {position: [3.5, 2.0]}
 planner: {name: fuzzy, weights: [1.0, 1.0]}
 drive: kinematic
 random: {layout: scatter, count: 4, radius: 0.2}
-expect: {pass_rate: RATE, max_time: 5.1}
+expect: {pass_rate: RATE, max_time: 6.2}
 """
 PLANNER = '''\
 """A planner that drives into the wall with every other seed or so, or raises."""
@@ -182,6 +182,7 @@ def checked(inside: Call, folder: Path, rate: str, *more: str) -> tuple[int, str
     return done.returncode, done.stdout, done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("in_this_process")
 def test_from_seeds_to_verdict_film_and_replay(inside: Call, tmp_path: Path) -> None:
     code, out, err = checked(inside, tmp_path, "0.2", "--json", "--video", "failed", "--out", "o")
@@ -210,7 +211,7 @@ def test_too_few_that_pass_fail_and_no_run_of_it_is_called_a_failure_before(
 ) -> None:
     code, out, _ = checked(inside, tmp_path, "1.0", "--github")
     assert code == 1
-    assert "FAIL  field         flaky: " in out
+    assert "FAIL  field          flaky: 4 of 8 pass, " in out
     assert "miss  field-seed-" in out
     assert out.count("::error ") == 1
     (line,) = [line for line in out.splitlines() if line.startswith("      again: ")]
@@ -246,7 +247,7 @@ def test_repeating_what_the_seed_does_not_change_tells_nothing(
 
 @pytest.mark.usefixtures("in_this_process")
 def test_one_run_is_one_of_one(inside: Call, tmp_path: Path) -> None:
-    text = FIELD.replace("RATE", "0.01").replace("5.1", "0.5")
+    text = FIELD.replace("RATE", "0.01").replace("6.2", "0.5")
     (tmp_path / "field.yaml").write_text(text)
     done = inside("check", "field.yaml", cwd=tmp_path)
     assert done.returncode == 1
