@@ -15,6 +15,7 @@ import pytest
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.checks.run_job import ScenarioRun
+    from fuzzyq_bullet.checks.verdict import Verdict
     from fuzzyq_bullet.workers import WorkerPool
 
 ENDINGS = (".scenario.yaml", ".scenario.yml")
@@ -22,6 +23,8 @@ IN_FOLDERS = (".yaml", ".yml")
 
 _folders = pytest.StashKey[list[Path]]()
 _pool = pytest.StashKey["WorkerPool"]()
+_repeat = pytest.StashKey[int]()
+MAX_REPEAT = 10_000
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -38,6 +41,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type="args",
         default=[],
     )
+    parser.addini(
+        "fuzzyq_repeat", "runs of each scenario, with seeds that count up from its own", default="1"
+    )
     parser.addini("fuzzyq_timeout", "wall-clock seconds that one scenario may take", default="120")
 
 
@@ -45,13 +51,20 @@ def pytest_configure(config: pytest.Config) -> None:
     """Note the folders once.
 
     Raises:
-        pytest.UsageError: If one is not there: what is misspelt must not pass for tested.
+        pytest.UsageError: If one is not there: what is misspelt must not pass for tested. If the
+            number of runs is none.
     """
     folders = [Path(os.path.normpath(folder)) for folder in config.getini("fuzzyq_scenarios")]
     for folder in folders:
         if not folder.is_dir():
             raise pytest.UsageError(f"fuzzyq_scenarios: {folder}: there is no such folder")
     config.stash[_folders] = folders
+    given = str(config.getini("fuzzyq_repeat"))
+    if not (given.isascii() and given.isdigit() and 1 <= int(given[:9]) <= MAX_REPEAT):
+        raise pytest.UsageError(
+            f"fuzzyq_repeat: must be a whole number from 1 to {MAX_REPEAT}, got {given!r}"
+        )
+    config.stash[_repeat] = int(given)
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
@@ -111,13 +124,53 @@ def run_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioRun]:
 
 
 class ScenarioFile(pytest.File):
-    """A scenario file: one test."""
+    """A scenario file: one test, or one for each seed and one for all of them."""
 
     def collect(self) -> Iterable[pytest.Item]:
-        """Return its test, called like the file."""
+        """Return its test, called like the file; before it, those of its seeds if it repeats."""
         name = self.path.name
         ending = next(one for one in (*ENDINGS, *IN_FOLDERS) if name.endswith(one))
-        yield ScenarioItem.from_parent(self, name=name.removesuffix(ending))
+        name = name.removesuffix(ending)
+        repeat = self.config.stash[_repeat]
+        if repeat == 1:
+            yield ScenarioItem.from_parent(self, name=name)
+            return
+        self.verdicts: dict[int, Verdict] = {}
+        for i in range(repeat):
+            yield SeedItem.from_parent(self, name=f"{name}[seed+{i}]", index=i)
+        yield GroupItem.from_parent(self, name=name)
+
+    def repeated(self, test: str, wanted: Iterable[int]) -> dict[int, Verdict]:
+        """Return verdicts by index of the seed; runs those that have not run in this process.
+
+        Args:
+            test: Name of the test that asks.
+            wanted: Which seeds, counted from the scenario's own.
+
+        Raises:
+            ScenarioFailedError: If the scenario cannot be read.
+        """
+        from fuzzyq_bullet.checks.plan import Plan, planned, refuse_dead_link
+        from fuzzyq_bullet.checks.session import check_all
+        from fuzzyq_bullet.errors import UserError
+        from fuzzyq_bullet.plugins import load_plugins
+
+        missing = [i for i in wanted if i not in self.verdicts]
+        if missing:
+            file = _from_here(self.path)
+            try:
+                refuse_dead_link(self.path)
+                load_plugins(_plugins(self.config))  # the seed is in a file that may need them
+                plan = planned([Path(file)], Plan(repeat=self.config.stash[_repeat]))
+                if plan.problems:
+                    raise UserError(*plan.problems)
+                again = _again(self.config, f"{file}::{test}")
+                jobs = [plan.jobs[i].model_copy(update={"again": again}) for i in missing]
+                for i, verdict in check_all(_pool_of(self.config), jobs):
+                    self.verdicts[missing[i]] = verdict
+            except UserError as error:
+                raise _failed(error) from None
+        return self.verdicts
 
 
 class ScenarioItem(pytest.Item):
@@ -135,16 +188,12 @@ class ScenarioItem(pytest.Item):
         from fuzzyq_bullet.errors import UserError
 
         file = _from_here(self.path)
-        # What lies on the path of pytest alone, only pytest finds again.
-        modules = any(not name.endswith(".py") for name in self.config.getini("fuzzyq_plugins"))
-        again = _command(f"{file}::{self.name}") if modules else ""
-        job = Job(file=file, name=self.name, again=again)
+        job = Job(file=file, name=self.name, again=_again(self.config, f"{file}::{self.name}"))
         try:
             refuse_dead_link(self.path)
             ((_, verdict),) = check_all(_pool_of(self.config), [job])
         except UserError as error:
-            problem = str(error).replace("--plugin:", "fuzzyq_plugins:")
-            raise ScenarioFailedError(problem) from None
+            raise _failed(error) from None
         if verdict.status != "passed":
             raise ScenarioFailedError(explanation(verdict))
 
@@ -159,8 +208,73 @@ class ScenarioItem(pytest.Item):
         return self.path, None, f"scenario {self.name}"
 
 
+class SeedItem(ScenarioItem):
+    """One scenario with one of several seeds.
+
+    Args:
+        index: Which, counted from the scenario's own.
+        options: What pytest gives.
+    """
+
+    def __init__(self, *, index: int, **options: Any) -> None:
+        super().__init__(**options)
+        self._index = index
+
+    def runtest(self) -> None:
+        """Run it. Where not every run has to pass, a miss is expected (xfail): the group decides.
+
+        Raises:
+            ScenarioFailedError: If every run has to pass, or it crashed, hung or cannot be run.
+        """
+        from fuzzyq_bullet.checks.verdict import explanation
+
+        verdict = _file_of(self).repeated(self.name, [self._index])[self._index]
+        if verdict.status == "failed" and verdict.expect and verdict.expect["pass_rate"] < 1.0:
+            pytest.xfail(f"{'; '.join(verdict.why)}; {verdict.replay}")
+        if verdict.status != "passed":
+            raise ScenarioFailedError(explanation(verdict))
+
+
+class GroupItem(ScenarioItem):
+    """One scenario with all its seeds, held to its pass rate."""
+
+    def runtest(self) -> None:
+        """Judge all runs; those that another process did, or that were left out, run here.
+
+        Raises:
+            ScenarioFailedError: If too few passed, or one crashed, hung or cannot be run.
+        """
+        from fuzzyq_bullet.checks.group import group_lines, group_of
+
+        count = self.config.stash[_repeat]
+        verdicts = _file_of(self).repeated(self.name, range(count))
+        group = group_of(self.name, [verdicts[i] for i in range(count)])
+        lines = "\n".join(group_lines(group))
+        if group.status != "passed":
+            raise ScenarioFailedError(lines)
+        self.add_report_section("call", "fuzzyq", lines)  # shown by -rP
+
+
 class ScenarioFailedError(Exception):
     """Why a scenario failed, in lines for people."""
+
+
+def _failed(error: Exception) -> ScenarioFailedError:
+    return ScenarioFailedError(str(error).replace("--plugin:", "fuzzyq_plugins:"))
+
+
+def _file_of(item: pytest.Item) -> ScenarioFile:
+    assert isinstance(item.parent, ScenarioFile)
+    return item.parent
+
+
+def _again(config: pytest.Config, test: str) -> str:
+    """Return the command that runs a test again if only pytest can; else nothing.
+
+    What lies on the path of pytest alone, only pytest finds again.
+    """
+    modules = any(not name.endswith(".py") for name in config.getini("fuzzyq_plugins"))
+    return _command(test) if modules else ""
 
 
 def _pool_of(config: pytest.Config) -> WorkerPool:

@@ -193,3 +193,32 @@ def test_a_folder_of_scenarios_may_lie_beside(tmp_path: Path) -> None:
     (tmp_path / "project" / "pytest.ini").write_text("[pytest]\nfuzzyq_scenarios = ../shared\n")
     done = pytest_in(tmp_path / "project", "-c", "pytest.ini", "../shared", "--collect-only", "-q")
     assert "short.yaml::short" in done.stdout
+
+
+@pytest.mark.slow
+def test_a_repeated_scenario_is_a_test_for_each_seed_and_one_for_all(tmp_path: Path) -> None:
+    (tmp_path / "pytest.ini").write_text("[pytest]\nfuzzyq_repeat = 4\n")
+    text = (
+        "name: lane\narena: {size: [4.0, 4.0]}\nstart: {position: [0.5, 2.0]}\n"
+        "goal: {position: [3.5, 2.0]}\nplanner: {name: fuzzy, weights: [1.0, 1.0]}\n"
+        "drive: kinematic\nseed: 5\nrandom: {layout: scatter, count: 4, radius: 0.2}\n"
+        "expect: {max_time: 6.2, pass_rate: 0.5}\n"
+    )
+    (tmp_path / "lane.scenario.yaml").write_text(text)
+    (tmp_path / "strict.scenario.yaml").write_text(text.replace("0.5}\n", "0.9}\n"))
+    done = pytest_in(tmp_path, "-rA", "--junitxml=junit.xml")
+    assert done.returncode == 1, done.stdout + done.stderr
+    # Seeds 5 and 7 are quick enough, 6 and 8 are not.
+    assert "1 failed, 5 passed, 4 xfailed" in done.stdout
+    assert "PASSED lane.scenario.yaml::lane\n" in done.stdout
+    assert "XFAIL lane.scenario.yaml::lane[seed+1] - took 6.7 s, expected 6.2 s" in done.stdout
+    assert "FAIL  strict  flaky: 2 of 4 pass, 95 % interval 0.15 to 0.85\n" in done.stdout
+    assert "again: fuzzyq run strict.scenario.yaml --seed " in done.stdout
+    cases = ElementTree.parse(tmp_path / "junit.xml").iter("testcase")
+    failed = [case.get("name") for case in cases if case.find("failure") is not None]
+    assert failed == ["strict"]
+    # The group alone runs what it needs; another process of xdist may have run the rest.
+    assert "1 passed" in pytest_in(tmp_path, "-k", "lane and not seed").stdout
+    refused = pytest_in(tmp_path, "-o", "fuzzyq_repeat=0")
+    assert refused.returncode == 4
+    assert "fuzzyq_repeat: must be a whole number from 1 to 10000, got '0'" in refused.stderr

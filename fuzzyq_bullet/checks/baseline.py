@@ -11,11 +11,13 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from fuzzyq_bullet.checks.group import Group
 from fuzzyq_bullet.checks.verdict import Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes, write_text
 from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.platforms import data_folder, pybullet_in_words
+from fuzzyq_bullet.version import __version__
 
 FILE = "check-record.json"
 """Its name, one in each folder that has scenarios."""
@@ -42,13 +44,41 @@ class BaselineRun(BaseModel):
     result: Result
 
 
+class BaselineGroup(BaseModel):
+    """The runs of one scenario with several seeds, as they were together.
+
+    Attributes:
+        file: The scenario file's name.
+        platform: What the digest holds for, together with ``version``.
+        version: Version of the package.
+        passed: Runs that passed.
+        runs: Runs in all.
+        mean_time_s: Mean simulated time of the runs that passed (s).
+        digest: Hash of the digests of all runs.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    file: str
+    platform: str
+    version: str
+    passed: int
+    runs: int
+    mean_time_s: float | None
+    digest: str
+
+
 class Baseline(BaseModel):
-    """All runs recorded in a folder, by scenario, planner, drive and seed."""
+    """All runs recorded in a folder, by scenario, planner, drive and seed; and repeated ones.
+
+    A group's key ends in its first seed and the number of its runs, such as ``0+20``.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
     format: Literal[1] = 1
     runs: dict[str, BaselineRun] = {}
+    groups: dict[str, BaselineGroup] = {}
 
 
 class Baselines:
@@ -75,7 +105,23 @@ class Baselines:
             return []
         return compare(entry, verdict.result)
 
-    def write(self, verdicts: Sequence[Verdict]) -> list[Path]:
+    def group_changes(self, group: Group, verdicts: Sequence[Verdict]) -> list[str]:
+        """Return what is otherwise than recorded of a group: pass rate, mean time, trajectories.
+
+        Args:
+            group: The verdict on all.
+            verdicts: The runs.
+        """
+        key, record = _group_key(verdicts), self._of(Path(group.file).parent)
+        if key is None:
+            return []
+        entry = None if record is None else record.groups.get(key)
+        if entry is None:
+            self.missing += 1
+            return []
+        return compare_groups(entry, group)
+
+    def write(self, verdicts: Sequence[Verdict], groups: Sequence[Group] = ()) -> list[Path]:
         """Baseline the runs that passed, beside their scenarios; return what was written.
 
         Runs that were recorded before and are not among these stay, unless their file is gone.
@@ -90,10 +136,24 @@ class Baselines:
             record.runs[_key(verdict.result)] = BaselineRun(
                 file=file.name, platform=this_platform(), result=verdict.result
             )
+        for group in groups:
+            members = [verdict for verdict in verdicts if verdict.file == group.file]
+            key, record = _group_key(members), folders.get(Path(group.file).parent)
+            if group.status != "passed" or key is None or record is None:
+                continue
+            record.groups[key] = BaselineGroup(
+                file=Path(group.file).name,
+                platform=this_platform(),
+                version=__version__,
+                **group.model_dump(include={"passed", "runs", "mean_time_s", "digest"}),
+            )
         written = []
         for folder, record in folders.items():
+            together = {
+                k: g for k, g in sorted(record.groups.items()) if (folder / g.file).exists()
+            }
             kept = {k: e for k, e in sorted(record.runs.items()) if (folder / e.file).exists()}
-            text = Baseline(runs=kept).model_dump_json(indent=1)
+            text = Baseline(runs=kept, groups=together).model_dump_json(indent=1)
             try:
                 write_text(folder / FILE, text + "\n")
                 written.append(folder / FILE)
@@ -174,6 +234,23 @@ def compare(entry: BaselineRun, now: Result) -> list[str]:
     return lines
 
 
+def compare_groups(entry: BaselineGroup, now: Group) -> list[str]:
+    """Return what is otherwise than in a group's entry, a line each."""
+    lines = []
+    if now.passed != entry.passed:
+        lines.append(f"{now.passed} of {now.runs} pass, recorded {entry.passed} of {entry.runs}")
+    a, b = now.mean_time_s, entry.mean_time_s
+    if a is not None and b and abs(a / b - 1.0) > RELATIVE:
+        lines.append(f"mean time {_signed(100 * (a / b - 1.0), 0)} %: {a:.2f} s, recorded {b:.2f}")
+    same_ground = (entry.platform, entry.version) == (this_platform(), __version__)
+    if not lines and same_ground and now.digest != entry.digest:
+        lines.append(
+            "other trajectories than recorded, with much the same figures "
+            f"(digest {now.digest[:8]}, recorded {entry.digest[:8]})"
+        )
+    return lines
+
+
 def this_platform() -> str:
     """Return what a digest depends on besides the version: every part that rounds in its own way.
 
@@ -194,6 +271,12 @@ def _processor() -> str:
 
 def _key(result: Result) -> str:
     return f"{result.scenario}/{result.planner}/{result.drive}/{result.seed}"
+
+
+def _group_key(verdicts: Sequence[Verdict]) -> str | None:
+    """Return the key of a group; None if its first run has no figures to tell it by."""
+    first = verdicts[0].result
+    return None if first is None else f"{_key(first)}+{len(verdicts)}"
 
 
 def _signed(value: float, digits: int) -> str:

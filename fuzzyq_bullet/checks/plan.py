@@ -143,6 +143,8 @@ class Jobs:
     problems: list[str] = field(default_factory=list)
     inputs: list[Path] = field(default_factory=list)
     """All files that the jobs read."""
+    names: list[str] = field(default_factory=list)
+    """The scenarios' names; each has as many jobs as it is repeated, one after the other."""
 
 
 def planned(files: Sequence[Path], plan: Plan) -> Jobs:
@@ -184,13 +186,14 @@ def _add(file: Path, plan: Plan, names: dict[str, Path], all_of: Jobs) -> None:
         all_of.problems += error.problems
         return
     names[scenario.name] = file
+    all_of.names.append(scenario.name)
     all_of.inputs += scenario_inputs(file, asked)
     for i in range(plan.repeat):
         ending = f"-seed-{first + i}" if plan.repeat > 1 else ""
         name = scenario.name + ending
         kept = f"{run_name(scenario, asked)}{ending}.npz"
         record = None if plan.folder is None else str(plan.folder / kept)
-        own = plan.seed is None and i == 0
+        own = plan.seed is None and plan.repeat == 1
         all_of.jobs.append(
             Job(
                 file=str(file),

@@ -11,6 +11,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from xml.etree import ElementTree
 
+from fuzzyq_bullet.checks.group import Group, group_lines, in_words
 from fuzzyq_bullet.checks.verdict import Verdict, counts_of, explanation, lines_of
 from fuzzyq_bullet.version import __version__
 
@@ -19,45 +20,87 @@ _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 """What XML 1.0 cannot hold, not even escaped."""
 
 
-def as_json(verdicts: Sequence[Verdict], problems: Sequence[str], seconds: float) -> str:
+def as_json(
+    verdicts: Sequence[Verdict],
+    problems: Sequence[str],
+    seconds: float,
+    groups: Sequence[Group] = (),
+) -> str:
     """Return all that is known of a check.
 
     Args:
-        verdicts: What came of each scenario.
+        verdicts: What came of each run.
         problems: What is wrong with the input besides.
         seconds: Wall-clock time of it all (s).
+        groups: What came of each scenario, where each ran several times.
     """
     told = {
         "version": __version__,
         **counts_of(verdicts),
         "problems": list(problems),
         "seconds": round(seconds, 3),
+        "groups": [group.model_dump(mode="json") for group in groups],
         "scenarios": [verdict.model_dump(mode="json") for verdict in verdicts],
     }
     return json.dumps(told, indent=2)
 
 
-def junit_xml(verdicts: Sequence[Verdict], problems: Sequence[str], seconds: float) -> str:
+def junit_xml(
+    verdicts: Sequence[Verdict],
+    problems: Sequence[str],
+    seconds: float,
+    groups: Sequence[Group] = (),
+) -> str:
     """Return the report, in the form that both Ant's schema and that of Jenkins allow.
 
+    Without groups it is one suite with a case for each scenario. A group is a suite: a case for
+    each seed and, last, one for the verdict on all. A run that failed and is allowed to is a
+    skipped case, with its reason.
+
     Args:
-        verdicts: What came of each scenario.
+        verdicts: What came of each run.
         problems: What is wrong with the input besides; each is an error of its own.
         seconds: Wall-clock time of it all (s).
+        groups: What came of each scenario, where each ran several times.
     """
-    cases = [_case(verdict) for verdict in verdicts]
+    root = ElementTree.Element("testsuites")
+    grouped = {group.file for group in groups}
+    for group in groups:
+        members = [verdict for verdict in verdicts if verdict.file == group.file]
+        cases = [*(_case(verdict) for verdict in members), _group_case(group)]
+        lines = [line for verdict in members for line in lines_of(verdict, member=True)]
+        taken = sum(verdict.seconds for verdict in members)
+        root.append(_suite(len(root), group.name, cases, [*lines, *group_lines(group)], taken))
+    alone = [verdict for verdict in verdicts if verdict.file not in grouped]
+    cases = [_case(verdict) for verdict in alone]
     cases += [_problem(i, problem) for i, problem in enumerate(problems, 1)]
+    if cases or not groups:
+        lines = [line for verdict in alone for line in lines_of(verdict)]
+        root.append(_suite(len(root), "fuzzyq check", cases, lines, seconds))
+    ElementTree.indent(root)
+    text = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def _suite(
+    number: int,
+    name: str,
+    cases: Sequence[ElementTree.Element],
+    lines: Sequence[str],
+    seconds: float,
+) -> ElementTree.Element:
     suite = ElementTree.Element(
         "testsuite",
         {
-            "name": "fuzzyq check",
+            "name": _clean(name),
             "package": "fuzzyq",
-            "id": "0",
+            "id": str(number),
             "timestamp": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%S"),
             "hostname": _clean(platform.node()) or "localhost",
             "tests": str(len(cases)),
             "failures": str(sum(case.find("failure") is not None for case in cases)),
             "errors": str(sum(case.find("error") is not None for case in cases)),
+            "skipped": str(sum(case.find("skipped") is not None for case in cases)),
             "time": f"{seconds:.3f}",
         },
     )
@@ -65,24 +108,33 @@ def junit_xml(verdicts: Sequence[Verdict], problems: Sequence[str], seconds: flo
     suite.extend(cases)
     # Ant's schema wants both, even empty.
     out = ElementTree.SubElement(suite, "system-out")
-    out.text = _clean("\n".join(line for verdict in verdicts for line in lines_of(verdict)))
+    out.text = _clean("\n".join(lines))
     ElementTree.SubElement(suite, "system-err")
-    root = ElementTree.Element("testsuites")
-    root.append(suite)
-    ElementTree.indent(root)
-    text = ElementTree.tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+    return suite
 
 
 def _case(verdict: Verdict) -> ElementTree.Element:
     case = _element(verdict.name, verdict.file, verdict.seconds)
-    if verdict.status != "passed":
+    if verdict.status == "allowed":
+        why = {"message": _clean("allowed by the pass rate: " + "; ".join(verdict.why))}
+        ElementTree.SubElement(case, "skipped", why)
+    elif verdict.status != "passed":
         # A failure is a verdict about the robot; an error is that there is none.
         kind = "failure" if verdict.status == "failed" else "error"
         why = {"message": _clean("; ".join(verdict.why)), "type": verdict.status}
         ElementTree.SubElement(case, kind, why).text = _clean(
             f"{verdict.file}:{verdict.line}\n{explanation(verdict)}"
         )
+    return case
+
+
+def _group_case(group: Group) -> ElementTree.Element:
+    case = _element(f"all {group.runs} runs", group.file, 0.0)
+    if group.status != "passed":
+        kind = "failure" if group.status == "failed" else "error"
+        why = {"message": _clean("; ".join([in_words(group), *group.why])), "type": group.status}
+        text = "\n".join([f"{group.file}:{group.line}", *group_lines(group)])
+        ElementTree.SubElement(case, kind, why).text = _clean(text)
     return case
 
 
@@ -118,6 +170,34 @@ def verdict_commands(verdict: Verdict) -> list[str]:
     if verdict.changes:
         text = "\n".join(verdict.changes)
         told.append(_command("warning", verdict.file, verdict.line, verdict.name, text))
+    return told
+
+
+def group_commands(group: Group, verdicts: Sequence[Verdict]) -> list[str]:
+    """Return GitHub's workflow commands on a group: one on its verdict, others on its warnings.
+
+    One error for all its runs, at the line of the worst: GitHub shows ten of a step.
+
+    Args:
+        group: The verdict on all.
+        verdicts: The runs.
+    """
+    told = []
+    if group.status != "passed":
+        lines = [
+            in_words(group),
+            *group.why,
+            *(f"worst: {why}" for why in group.worst_why),
+            group.replay,
+        ]
+        told.append(_command("error", group.file, group.line, group.name, "\n".join(lines)))
+    for warning in dict.fromkeys(one for verdict in verdicts for one in verdict.warnings):
+        placed = _PLACE.match(warning)
+        line = int(placed["line"] or 1) if placed else 1
+        told.append(_command("warning", group.file, line, group.name, warning))
+    if group.changes:
+        text = "\n".join(group.changes)
+        told.append(_command("warning", group.file, group.line, group.name, text))
     return told
 
 

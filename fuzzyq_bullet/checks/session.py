@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from fuzzyq_bullet.checks.baseline import Baselines
+from fuzzyq_bullet.checks.group import Group, allow, badness, group_of
 from fuzzyq_bullet.checks.run_job import run_job
 from fuzzyq_bullet.checks.verdict import Job, Keep, Verdict, check_command, replay_command
 from fuzzyq_bullet.errors import UserError
@@ -69,6 +70,8 @@ class Session:
         keep: Of which runs the record is kept.
         folder: Where.
         replace: Whether it may take the place of that of another run.
+        repeat: Runs of each scenario, one after the other; more than one are a group.
+        names: The scenarios' names, in order.
     """
 
     baselines: Baselines | None
@@ -76,21 +79,35 @@ class Session:
     keep: Keep
     folder: Path
     replace: bool
+    repeat: int = 1
+    names: Sequence[str] = ()
 
-    def settled(self, finished: Iterable[tuple[int, Verdict]]) -> Iterator[Verdict]:
+    def settled(self, finished: Iterable[tuple[int, Verdict]]) -> Iterator[Verdict | Group]:
         """Yield verdicts in the order asked for, each settled as soon as all before it are.
+
+        A group's verdict comes behind those of its runs, which it may change from ``failed`` to
+        ``allowed``.
 
         Args:
             finished: The index of each job and its verdict, in any order.
         """
         due, waiting = 0, dict[int, Verdict]()
+        members: list[Verdict] = []
         for i, verdict in finished:
             waiting[i] = verdict
             while due in waiting:
                 settled = waiting.pop(due)
-                self._settle(settled)
-                yield settled
                 due += 1
+                if self.repeat == 1:
+                    self._settle(settled)
+                    yield settled
+                    continue
+                members.append(settled)
+                _keep_worst(members)
+                yield settled
+                if len(members) == self.repeat:
+                    yield self._settled_group(self.names[due // self.repeat - 1], members)
+                    members = []
 
     def _settle(self, verdict: Verdict) -> None:
         if self.baselines is not None:
@@ -99,16 +116,32 @@ class Session:
                 verdict.status = "failed"
                 verdict.why = ["behaves otherwise than recorded (--strict)"]
         if verdict.record is not None:
-            self._put_away(verdict, Path(verdict.record))
+            wanted = self.keep != "failed" or verdict.status != "passed"
+            self._put_away(verdict, Path(verdict.record), wanted=wanted)
 
-    def _put_away(self, verdict: Verdict, source: Path) -> None:
-        """Move the record of a run to where it is kept, or remove it.
+    def _settled_group(self, name: str, members: Sequence[Verdict]) -> Group:
+        group = group_of(name, members)
+        if self.baselines is not None:
+            group.changes = self.baselines.group_changes(group, members)
+            if self.strict and group.changes and group.status == "passed":
+                group.status = "failed"
+                group.why = ["behaves otherwise than recorded (--strict)"]
+        allow(group, members)
+        for verdict in members:
+            if verdict.record is not None:  # the worst alone: see _keep_worst
+                failed = verdict.status != "passed" or group.status != "passed"
+                wanted = self.keep != "failed" or failed
+                self._put_away(verdict, Path(verdict.record), wanted=wanted)
+        return group
+
+    def _put_away(self, verdict: Verdict, source: Path, *, wanted: bool) -> None:
+        """Move the record of a run to where it is kept, or remove it where it is not wanted.
 
         It takes the place of one of the same run alone. That it cannot be kept changes no verdict.
         """
         verdict.record = None
         try:
-            if self.keep == "failed" and verdict.status == "passed":
+            if not wanted:
                 return
             target = self.folder / source.name
             if not self.replace:
@@ -121,6 +154,17 @@ class Session:
             verdict.no_film = str(error)
         finally:
             source.unlink(missing_ok=True)
+
+
+def _keep_worst(members: Sequence[Verdict]) -> None:
+    """Remove the records of all runs but the worst of those that have one: it alone is filmed."""
+    kept = [verdict for verdict in members if verdict.record is not None]
+    if len(kept) > 1:
+        worst = max(kept, key=badness)
+        for verdict in kept:
+            if verdict is not worst and verdict.record is not None:
+                Path(verdict.record).unlink(missing_ok=True)
+                verdict.record = None
 
 
 def make_films(pool: WorkerPool, verdicts: Sequence[Verdict]) -> Iterator[str]:

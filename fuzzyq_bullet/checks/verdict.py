@@ -13,12 +13,13 @@ from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.wording import plain
 from fuzzyq_bullet.workers.pool import MEMORY_MB, TIMEOUT
 
-Status: TypeAlias = Literal["passed", "failed", "broken", "invalid"]
+Status: TypeAlias = Literal["passed", "allowed", "failed", "broken", "invalid"]
 Keep: TypeAlias = Literal["failed", "all", "none"]
 
 AGAIN = "      again: "
 """What the command that replays a run begins with."""
-_MARKS = {"passed": "ok", "failed": "FAIL", "broken": "FAIL", "invalid": "ERROR"}
+MARKS = {"passed": "ok", "allowed": "miss", "failed": "FAIL", "broken": "FAIL", "invalid": "ERROR"}
+"""What the line of a verdict begins with."""
 
 
 class Job(BaseModel):
@@ -73,8 +74,9 @@ class Verdict(BaseModel):
     Attributes:
         name: Name of the scenario, with the seed where there are several.
         file: Its file.
-        status: ``passed``; ``failed``: it missed what it expects; ``broken``: it crashed, hung or
-            ran out of memory; ``invalid``: it cannot be run at all.
+        status: ``passed``; ``failed``: it missed what it expects; ``allowed``: it did so too, and
+            the pass rate of its group allows it; ``broken``: it crashed, hung or ran out of
+            memory; ``invalid``: it cannot be run at all.
         why: What is wrong, a line each; empty when it passed.
         warnings: What is allowed in the scenario and yet hardly meant, a line each.
         line: The line of the file that this is about.
@@ -106,15 +108,18 @@ class Verdict(BaseModel):
     seconds: float = 0.0
 
 
-def lines_of(verdict: Verdict, width: int = 0) -> list[str]:
+def lines_of(verdict: Verdict, width: int = 0, *, member: bool = False) -> list[str]:
     """Return the line of a verdict and, beneath it, why it failed and how to see it again.
 
     Args:
         verdict: What came of a scenario.
         width: Width of the column of names.
+        member: Whether it is one run of several, whose group is judged when all are there: a miss
+            is not a failure yet, and the group tells how to see the worst again.
     """
     result = verdict.result
-    line = f"{_MARKS[verdict.status]:<5} {verdict.name:<{width}}"
+    mark = MARKS["allowed" if member and verdict.status == "failed" else verdict.status]
+    line = f"{mark:<5} {verdict.name:<{width}}"
     if result is None:
         line += f"  {verdict.file}"
     else:
@@ -127,7 +132,7 @@ def lines_of(verdict: Verdict, width: int = 0) -> list[str]:
     lines += [f"      warning: {warning}" for warning in verdict.warnings]
     lines += [f"      changed: {change}" for change in verdict.changes]
     lines += [f"      no film: {verdict.no_film}"] if verdict.no_film else []
-    if verdict.status in ("failed", "broken") and verdict.replay:
+    if verdict.status in ("allowed", "failed", "broken") and not member and verdict.replay:
         lines.append(AGAIN + verdict.replay)
     return [printable(line) for line in lines]
 
@@ -150,6 +155,7 @@ def summary(verdicts: list[Verdict], problems: int, seconds: float) -> str:
     count = counts_of(verdicts)
     failed, wrong = count["failed"] + count["broken"], count["invalid"] + problems
     parts = [f"{count['passed']} passed"]
+    parts += [f"{count['allowed']} missed and allowed"] if count["allowed"] else []
     parts += [f"{failed} failed"] if failed else []
     parts += [f"{wrong} mistake{'s' if wrong > 1 else ''} in the input"] if wrong else []
     changed = sum(bool(verdict.changes) for verdict in verdicts)

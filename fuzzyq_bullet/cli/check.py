@@ -18,9 +18,13 @@ from fuzzyq_bullet.cli.options import FILE, FOLDER, Json, PlannerOption, PluginO
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
+    from fuzzyq_bullet.checks.group import Group
     from fuzzyq_bullet.checks.verdict import Verdict
+
+
+_COLOURS = {"ok": "green", "miss": "yellow"}
 
 
 class Video(str, Enum):
@@ -44,7 +48,10 @@ def check(
     seed: Annotated[int | None, typer.Option(help="(First) seed to use instead.")] = None,
     drive: Annotated[str | None, typer.Option(help="wheels or kinematic, instead.")] = None,
     repeat: Annotated[
-        int, typer.Option(min=1, max=10_000, help="Runs of each, with seeds that count up.")
+        int,
+        typer.Option(
+            min=1, max=10_000, help="Runs of each, with seeds that count up; one verdict on all."
+        ),
     ] = 1,
     plugin: PluginOption = None,
     jobs: Annotated[
@@ -82,6 +89,7 @@ def check(
         UserError: If an option is wrong, or there is no scenario.
     """
     from fuzzyq_bullet.checks.baseline import Baselines, baselines_beside, refuse_bundled
+    from fuzzyq_bullet.checks.group import Group
     from fuzzyq_bullet.checks.plan import Plan, discover, planned
     from fuzzyq_bullet.checks.reports import as_json, harmless, junit_xml, problem_command
     from fuzzyq_bullet.checks.session import Session, check_all, make_films
@@ -116,18 +124,25 @@ def check(
         refuse_inputs(written, inputs)
         begun = time.monotonic()
         baselines = Baselines()
-        show = _printer(json=json, github=github, width=max(len(job.name) for job in plan.jobs))
+        width = max(len(job.name) for job in plan.jobs)
+        show = _printer(json=json, github=github, width=width, member=repeat > 1)
 
-        session = Session(None if record else baselines, strict, video.value, out, replace)
-        verdicts = []
+        compared = None if record else baselines
+        session = Session(compared, strict, video.value, out, replace, repeat, plan.names)
+        verdicts: list[Verdict] = []
+        groups: list[Group] = []
         with WorkerPool(jobs, plugins=plugin or [], timeout=timeout, memory_mb=memory) as pool:
-            for verdict in session.settled(check_all(pool, plan.jobs)):
-                verdicts.append(verdict)
-                show(verdict)
+            for one in session.settled(check_all(pool, plan.jobs)):
+                if isinstance(one, Group):
+                    groups.append(one)
+                    show(one, verdicts[-repeat:])
+                else:
+                    verdicts.append(one)
+                    show(one)
             for line in make_films(pool, verdicts):
                 say(line)
     if record:
-        for path in baselines.write(verdicts):
+        for path in baselines.write(verdicts, groups):
             say(f"recorded in {path}")
     if strict and baselines.missing:
         say(f"{baselines.missing} not compared: not recorded yet (fuzzyq check --record)")
@@ -137,31 +152,43 @@ def check(
         if github:
             typer.echo(problem_command(problem), err=json)
     seconds = time.monotonic() - begun
+    if groups:
+        passed = sum(group.status == "passed" for group in groups)
+        say(f"{passed} of {len(groups)} scenarios passed, each with {repeat} seeds", style="bold")
     say(summary(verdicts, len(problems), seconds), style="bold")
     if junit is not None:
-        write_text(junit, junit_xml(verdicts, problems, seconds))
+        write_text(junit, junit_xml(verdicts, problems, seconds, groups))
     if json:
-        typer.echo(as_json(verdicts, problems, seconds))
+        typer.echo(as_json(verdicts, problems, seconds, groups))
     if problems or any(verdict.status == "invalid" for verdict in verdicts):
         raise typer.Exit(2)
-    if len(verdicts) < len(plan.jobs) or any(one.status != "passed" for one in verdicts):
+    judged = groups if repeat > 1 else verdicts
+    if len(verdicts) < len(plan.jobs) or any(one.status != "passed" for one in judged):
         raise typer.Exit(1)
 
 
-def _printer(*, json: bool, github: bool, width: int) -> Callable[[Verdict], None]:
-    """Return what prints a verdict: on stdout, or on stderr where stdout is for JSON alone."""
-    from fuzzyq_bullet.checks.reports import harmless, verdict_commands
+def _printer(*, json: bool, github: bool, width: int, member: bool) -> Callable[..., None]:
+    """Return what prints a verdict, or a group's with those of its runs behind it.
+
+    On stdout, or on stderr where stdout is for JSON alone.
+    """
+    from fuzzyq_bullet.checks.group import Group, group_lines
+    from fuzzyq_bullet.checks.reports import group_commands, harmless, verdict_commands
     from fuzzyq_bullet.checks.verdict import lines_of
 
     terminal = (sys.stderr if json else sys.stdout).isatty()
 
-    def show(verdict: Verdict) -> None:
-        lines = lines_of(verdict, width)
+    def show(one: Verdict | Group, members: Sequence[Verdict] = ()) -> None:
+        if isinstance(one, Group):
+            lines, commands = group_lines(one, width), group_commands(one, members)
+        else:
+            lines = lines_of(one, width, member=member)
+            commands = [] if member else verdict_commands(one)
         if github:
             lines = [harmless(line) for line in lines]
         if terminal:
             lines = _fitted(lines)
-        for line in [*lines, *(verdict_commands(verdict) if github else [])]:
+        for line in [*lines, *(commands if github else [])]:
             typer.echo(line, err=json)
 
     return show
@@ -176,7 +203,7 @@ def _fitted(lines: list[str]) -> list[str]:
 
     mark, rest = lines[0][:5], lines[0][5:]
     if not os.environ.get("NO_COLOR"):
-        mark = typer.style(mark, fg="green" if mark.startswith("ok") else "red", bold=True)
+        mark = typer.style(mark, fg=_COLOURS.get(mark.strip(), "red"), bold=True)
     columns = shutil.get_terminal_size().columns
     told = [mark + rest]
     for line in lines[1:]:

@@ -34,6 +34,10 @@ class Expect(Model):
     max_time: Annotated[Number, Field(gt=0.0)] | None = Field(
         default=None, description="Longest simulated time (s)."
     )
+    pass_rate: Annotated[Number, Field(gt=0.0, le=1.0)] = Field(
+        default=1.0,
+        description="Least share of the runs that must meet all this, with check --repeat.",
+    )
 
 
 @dataclass(frozen=True)
@@ -65,6 +69,8 @@ class _Expectation:
         return f"{self.said.format(figure)}, {wanted}"
 
 
+_OF_GROUPS = ("pass_rate",)
+"""What is expected of several runs together; one run neither meets nor misses it."""
 _expectations: dict[str, _Expectation] = {}
 _model: type[Expect] = Expect
 
@@ -111,7 +117,8 @@ def register_expectation(
         ValueError: If the name is taken, or can be no key.
     """
     global _model
-    if name in _expectations or (name not in Expect.model_fields and hasattr(Expect, name)):
+    taken = name in _expectations or name in _OF_GROUPS
+    if taken or (name not in Expect.model_fields and hasattr(Expect, name)):
         raise ValueError(f"an expectation named {name!r} is registered already")
     if not name.isidentifier() or name.startswith("_"):
         raise ValueError(f"an expectation cannot be named {name!r}; allowed: letters, digits, '_'")
@@ -159,7 +166,7 @@ def unmet_expectations(expect: Expect, result: Any) -> list[str]:
     """
     lines = []
     for name, limit in expect:
-        if limit is None:
+        if limit is None or name in _OF_GROUPS:
             continue
         try:
             lines.append(_expectations[name].unmet(limit, result))
