@@ -153,12 +153,3 @@ def csv_of(columns: Columns, arrays: Mapping[str, NDArray[Any]], *, units: bool 
             cells.append(["" if value != value else value for value in values])
     writer.writerows(zip(*cells, strict=True))
     return text.getvalue()
-
-
-def array_of(column: Column, values: list[Any]) -> NDArray[Any]:
-    """Return what was decided as an array: of words, their numbers."""
-    if column.words:
-        return np.array([column.words.index(word) for word in values], dtype=column.dtype)
-    array = np.array(values, dtype=column.dtype).reshape(len(values), *column.shape)
-    # What a planner cannot put into a number is not explained; only a reach may be endless.
-    return array if column.endless else np.where(np.isinf(array), np.nan, array)

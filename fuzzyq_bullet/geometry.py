@@ -160,6 +160,15 @@ class Field:
             np.minimum(result, group.clearance(p), out=result)
         return result
 
+    def clearance_on_the_way(self, points: ArrayLike) -> Floats:
+        """Return the least clearance (m) on the straight way to each point from the one before.
+
+        Args:
+            points: Shape (K, 2), K ≥ 1, in metres; at the first it is that of the point itself.
+        """
+        path = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        return self.clearance_along(path[[0, *range(len(path) - 1)]], path)[0]
+
     def clearance_along(self, starts: ArrayLike, ends: ArrayLike) -> tuple[Floats, Floats]:
         """Return the least clearance along each straight segment, and the point where it is.
 

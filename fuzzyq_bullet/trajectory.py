@@ -167,6 +167,9 @@ class Trajectory:
             twists: What the planner asked for instead, by the number of the decision.
         """
         at = np.array(states, dtype=np.float64)
+        # The point robot's moves may be long: what counts is the least on the way to each tick.
+        kinematic = scenario.drive == "kinematic"
+        told = obstacles.clearance_on_the_way if kinematic else obstacles.clearance
         return cls(
             scenario=scenario,
             outcome=outcome,
@@ -179,7 +182,7 @@ class Trajectory:
                 speed=at[:, 4],
                 turn_rate=at[:, 5],
                 wheel_speeds=at[:, 6:8],
-                clearance=_clearance(obstacles, at[:, 1:3], scenario.drive) - scenario.robot.radius,
+                clearance=told(at[:, 1:3]) - scenario.robot.radius,
             ),
             decisions=Decisions(
                 tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
@@ -340,13 +343,3 @@ class _Head(BaseModel):
     physics_steps: Annotated[int, Field(ge=0)]
     collision: Collision | None
     scenario: Scenario
-
-
-def _clearance(field: Obstacles, positions: Floats, drive: str) -> Floats:
-    """Return how far everything is from the robot's centre (m), shape (T,).
-
-    The point robot's moves may be long: what counts is the least on the way to each tick.
-    """
-    if drive == "kinematic":
-        return field.clearance_along(positions[[0, *range(len(positions) - 1)]], positions)[0]
-    return field.clearance(positions)

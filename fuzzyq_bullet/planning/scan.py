@@ -44,8 +44,9 @@ def _around(count: int) -> tuple[Floats, NDArray[np.complex128]]:
 
     So a difference of two is one product.
     """
-    headings = np.arange(count) * (math.tau / count)
-    return headings, np.exp(1j * headings)
+    headings: Floats = np.arange(count, dtype=np.float64) * (math.tau / count)
+    turns: NDArray[np.complex128] = np.exp(1j * headings)
+    return headings, turns
 
 
 def _headings(farther: float) -> int:
