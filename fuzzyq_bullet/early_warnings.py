@@ -13,6 +13,7 @@ from fuzzyq_bullet.problems import Loc, Problem, key_path
 from fuzzyq_bullet.quantities import ANGLE_KEYS
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.files import problem_lines
+from fuzzyq_bullet.shapes.outlines import FINEST
 
 NO_WAY = "there is no way from the start to the goal for the robot, wherever it drives"
 
@@ -22,17 +23,29 @@ def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
 
     They are: no way to the goal at all, although it is expected to be reached; a limit of time, of
     decisions or an expectation that the robot could not keep on a straight line at full speed; an
-    angle that looks like degrees; rules with an input that belongs to none of its sets.
+    angle that looks like degrees; rules with an input that belongs to none of its sets; a polygon
+    with a tip so sharp, or a part so thin, that the detection lines may see it too late.
 
     Args:
         file: The scenario file.
         given: What it says.
         realised: The same with every obstacle listed.
     """
-    found = [*_degrees(given), *_too_short(given), *_gaps(given)]
-    if given.expect.outcome == "goal" and has_way(realised) is False:
+    found = [*_degrees(given), *_too_short(given), *_gaps(given), *_too_thin(given)]
+    if given.expect.outcome == "goal" and not has_way(realised):
         found.append(Problem(("goal",), NO_WAY))
     return problem_lines(file, found)
+
+
+def _too_thin(scenario: Scenario) -> Iterator[Problem]:
+    thin = [i for i, one in enumerate(scenario.obstacles) if one.thickness() < FINEST]
+    if thin:
+        others = f"; so have {len(thin) - 1} others" if len(thin) > 1 else ""
+        yield Problem(
+            ("obstacles", thin[0]),
+            f"has a sharp tip, or a part thinner than {FINEST:g} m: the detection lines may see it "
+            f"too late{others}",
+        )
 
 
 def _gaps(scenario: Scenario) -> Iterator[Problem]:

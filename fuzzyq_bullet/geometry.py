@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzyq_bullet.shapes.base import GRAZE, PARALLEL, Shape, ShapeGroup
+from fuzzyq_bullet.shapes.base import PARALLEL, Shape, ShapeGroup
 from fuzzyq_bullet.shapes.box import Boxes
 from fuzzyq_bullet.shapes.cylinder import Cylinders
 
@@ -19,10 +19,8 @@ Ints: TypeAlias = NDArray[np.intp]
 WALL = -1
 """What ``Field.nearest`` answers in place of an obstacle's index when a wall is nearest."""
 
-_TOGETHER = 48
-"""Points whose clearance is told at once; beside each other they share what is near them."""
 _CHUNK = 1_000_000
-"""Most distances held in memory at once by ``Field.clearance``."""
+"""Most distances held in memory at once by ``Field.clearance_along``."""
 
 
 def wrap_angle(angle: float) -> float:
@@ -37,22 +35,21 @@ class Field:
     Args:
         cylinders: Shape (N, 3): x, y, radius (m).
         boxes: Shape (M, 5): x, y, size along its own x and y (m), yaw (rad).
-        arena: Width and depth (m) of the walls' inner faces x = 0, x = width, y = 0, y = depth;
-            None where there are no walls.
+        arena: Width and depth (m) between the walls' inner faces; None where there are no walls.
+        origin: Lower left corner between the walls (m).
         groups: Obstacles of any shape, a group for each, behind the cylinders and boxes.
         order: Shape (N,): the number by which ``nearest`` and ``distances`` know each
             obstacle, in the order of the groups; by default that order.
 
     Attributes:
         groups: All obstacles, a group for each shape, none of them empty.
-        arena: As given.
+        walls: Inner faces of the walls (m): left, bottom, right, top; None where there are none.
     """
 
-    __slots__ = ("_bounds", "_order", "arena", "groups")
+    __slots__ = ("_order", "groups", "walls")
 
     groups: tuple[ShapeGroup, ...]
-    arena: tuple[float, float] | None
-    _bounds: list[tuple[int, int]]
+    walls: tuple[float, float, float, float] | None
     _order: Ints
 
     def __init__(
@@ -61,21 +58,21 @@ class Field:
         boxes: ArrayLike = (),
         arena: tuple[float, float] | None = None,
         *,
+        origin: tuple[float, float] = (0.0, 0.0),
         groups: Sequence[ShapeGroup] = (),
         order: ArrayLike | None = None,
     ) -> None:
         every = (Cylinders(np.asarray(cylinders)), Boxes(np.asarray(boxes)), *groups)
         kept = tuple(group for group in every if len(group))
-        ends = np.cumsum([len(group) for group in kept]).tolist()
-        count = ends[-1] if ends else 0
+        count = sum(map(len, kept))
         number = np.arange(count) if order is None else np.array(order, dtype=np.intp)
         if number.shape != (count,) or not np.array_equal(np.sort(number), np.arange(count)):
             raise ValueError("order must number all obstacles once, from 0")
         number.flags.writeable = False
+        x, y = origin
         ready = {
             "groups": kept,
-            "arena": arena,
-            "_bounds": list(zip([0, *ends], ends, strict=False)),
+            "walls": None if arena is None else (x, y, x + arena[0], y + arena[1]),
             "_order": number,
         }
         for name, value in ready.items():
@@ -90,14 +87,15 @@ class Field:
 
         Args:
             obstacles: Obstacles of any shapes.
-            arena: A thing with ``size`` and ``walls``; None for no walls.
+            arena: A thing with ``size``, ``origin`` and ``walls``; None for no walls.
         """
         # Cylinders and boxes first, then others as they come: of equal distances the first counts.
         members: dict[type[ShapeGroup], list[int]] = {Cylinders: [], Boxes: []}
         for i, item in enumerate(obstacles):
             members.setdefault(item.group, []).append(i)
         return cls(
-            arena=tuple(arena.size) if arena is not None and arena.walls else None,
+            arena=arena.size if arena is not None and arena.walls else None,
+            origin=(0.0, 0.0) if arena is None else arena.origin,
             groups=[kind.of([obstacles[i] for i in at]) for kind, at in members.items() if at],
             order=[i for at in members.values() for i in at],
         )
@@ -158,11 +156,8 @@ class Field:
         """
         p = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         result = self._to_walls(p)
-        if len(self._order):
-            rows = max(1, min(_TOGETHER, _CHUNK // len(self._order)))
-            for k in range(0, len(p), rows):
-                here, least = p[k : k + rows], result[k : k + rows]
-                np.minimum(least, self._to_obstacles(here, self._near(here)).min(1), out=least)
+        for group in self.groups:
+            np.minimum(result, group.clearance(p), out=result)
         return result
 
     def clearance_along(self, starts: ArrayLike, ends: ArrayLike) -> tuple[Floats, Floats]:
@@ -225,39 +220,25 @@ class Field:
         for group in self.groups:
             reach = group.free_distances(x, y, ux[:, None], uy[:, None], radius)
             np.minimum(free, reach.min(axis=1), out=free)
-        if self.arena is not None:
-            for at, u, size in ((x, ux, self.arena[0]), (y, uy, self.arena[1])):
-                gap = np.where(u > 0.0, size - radius - at, at - radius)
+        if self.walls is not None:
+            left, bottom, right, top = self.walls
+            for at, u, low, high in ((x, ux, left, right), (y, uy, bottom, top)):
+                gap = np.where(u > 0.0, high - radius - at, at - low - radius)
                 speed = np.abs(u)
                 wall = gap / np.maximum(speed, PARALLEL)
                 np.minimum(free, np.where(speed > PARALLEL, wall, np.inf), out=free)
         np.maximum(free, 0.0, out=free)
         return free
 
-    def _near(self, p: Floats) -> NDArray[np.bool_] | None:
-        """Return which obstacles, shape (N,), may be nearest to any of the points p."""
-        if len(p) == 1 or not np.isfinite(p).all():
-            return None
-        middle = (p.min(axis=0) + p.max(axis=0)) / 2.0
-        around = float(np.abs(p - middle).sum(axis=1).max())
-        # No point is farther from the middle than this, so no distance differs by more from there.
-        to = self._to_obstacles(middle[None])[0]
-        near: NDArray[np.bool_] = to <= to.min() + 2.0 * around + GRAZE
-        return near
-
-    def _to_obstacles(self, p: Floats, which: NDArray[np.bool_] | None = None) -> Floats:
-        """Signed distances (m), shape (K, N), in the groups' order; all, or only of ``which``."""
-        px, py = p[:, :1], p[:, 1:]
-        told = [
-            group.distances(px, py, None if which is None else which[first:end])
-            for group, (first, end) in zip(self.groups, self._bounds, strict=True)
-        ]
+    def _to_obstacles(self, p: Floats) -> Floats:
+        """Signed distances (m), shape (K, N), in the groups' order."""
+        told = [group.distances(p[:, :1], p[:, 1:]) for group in self.groups]
         return told[0] if len(told) == 1 else np.hstack([np.zeros((len(p), 0)), *told])
 
     def _to_walls(self, p: Floats) -> Floats:
         """Signed distance (m), shape (K,), to the nearest wall; infinite where there is none."""
-        if self.arena is None:
+        if self.walls is None:
             return np.full(len(p), np.inf)
-        width, depth = self.arena
+        left, bottom, right, top = self.walls
         x, y = p[:, 0], p[:, 1]
-        return np.minimum(np.minimum(x, width - x), np.minimum(y, depth - y))
+        return np.minimum(np.minimum(x - left, right - x), np.minimum(y - bottom, top - y))

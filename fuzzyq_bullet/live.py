@@ -88,7 +88,7 @@ def still_meshes(scenario: Scenario) -> list[Mesh]:
     return [
         *meshes.solids(
             meshes.ground_of(scenario, everywhere),
-            [obstacle.outline() for obstacle in scenario.obstacles],
+            [piece for obstacle in scenario.obstacles for piece in obstacle.pieces()],
             meshes.walls_of(scenario, everywhere),
             meshes.goal_disc(scenario),
         ),

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
+from fuzzyq_bullet.ground_truth.open_space import has_open_space
 from fuzzyq_bullet.planning import MODES
 from fuzzyq_bullet.rules_turn import share_turned
 from fuzzyq_bullet.scenario import Scenario
@@ -20,7 +21,9 @@ from fuzzyq_bullet.trajectory import Outcome, Trajectory
 from fuzzyq_bullet.wording import plain
 
 MOST_ROUND = 1500
-"""Obstacles up to which the shortest path is looked for, a box counting as its four corners.
+"""Obstacles up to which the shortest path is looked for.
+
+A box counts as its four corners, a polygon as those of its corners that point outwards.
 
 The oracle takes about 0.03 s for 125 cylinders, 1 s for 1000, 2 s for 1500 (or 375 boxes), 8 s for
 3000 and 100 s for 10 000: beyond this a person would wait longer for it than for the run.
@@ -138,13 +141,15 @@ def result_of(trajectory: Trajectory) -> Result:
     )
 
 
-def has_way(scenario: Scenario) -> bool | None:
-    """Return whether there is any way to the goal; None among more than ``MOST_ROUND`` obstacles.
+def has_way(scenario: Scenario) -> bool:
+    """Return whether there is any way to the goal.
+
+    Exactly; among more than ``MOST_ROUND`` obstacles, to about 0.1 mm.
 
     Args:
         scenario: A realised scenario.
     """
-    return None if _is_crowded(scenario) else feasible(scenario)
+    return has_open_space(scenario) if _is_crowded(scenario) else feasible(scenario)
 
 
 def collision_text(trajectory: Trajectory, listed: int) -> str:

@@ -27,8 +27,8 @@ Point: TypeAlias = tuple[Coordinate, Coordinate]
 ANGLE_KEYS = ("heading", "yaw", "direction")
 """What keys of angles are called, all in radians."""
 MAX_OBSTACLES = 10_000
-MIN_RADIUS = 0.025
-"""Nothing thinner than twice this is sure to be hit by a ray of a detection line (m)."""
+MIN_RADIUS = 0.02
+"""Least radius and half width of an obstacle (m)."""
 TOUCH = 1e-6
 """Things closer than this (m) touch, and the physics counts a touch as a collision."""
 DECIMALS = 4

@@ -264,7 +264,7 @@ def test_indices_are_those_of_the_scenario_with_shapes_mixed():
         assert field.nearest(item.position) == (i, -0.2)
     assert field.nearest((8.5, 5.0)) == (WALL, 0.5)
     np.testing.assert_allclose(field.distances((1.0, 2.0)), [0.8, math.sqrt(5) - 0.2, 3.88], 1e-2)
-    assert Field.of(obstacles, Arena(size=(9.0, 9.0), walls=False)).arena is None
+    assert Field.of(obstacles, Arena(size=(9.0, 9.0), walls=False)).walls is None
 
 
 def test_a_field_is_frozen_and_shares_no_memory_with_what_it_was_built_from():

@@ -126,7 +126,7 @@ def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
     if touch is None and least is not None and wanted is not None and least < wanted:
         touch = nearest(trajectory, source)
     why = list(misses)
-    if expect.outcome == "goal" != result.outcome and has_way(trajectory.scenario) is False:
+    if expect.outcome == "goal" != result.outcome and not has_way(trajectory.scenario):
         why.insert(0, NO_WAY)  # before what came of it
     if touch is not None:
         why.append(in_words(touch, verdict.file))

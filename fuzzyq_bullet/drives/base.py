@@ -14,6 +14,7 @@ from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.sensors import CorridorSensor
+from fuzzyq_bullet.shapes import thinnest
 from fuzzyq_bullet.trajectory import Collision
 
 
@@ -36,7 +37,9 @@ class Driver(ABC):
     def __init__(self, world: SensorWorld, scenario: Scenario, motion: Motion | None) -> None:
         # The seed's third stream: the first places the obstacles, the second is the planner's.
         rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(2,)))
-        self._sensor = CorridorSensor(scenario.sensor, world.cast, scenario.robot.spec, rng)
+        self._sensor = CorridorSensor(
+            scenario.sensor, world.cast, scenario.robot.spec, rng, thinnest(scenario.obstacles)
+        )
         self._field, self._radius = world.field, scenario.robot.radius
         self._goal = scenario.goal
         self._motion = motion

@@ -62,7 +62,7 @@ def world_entities(scenario: Scenario) -> SceneUpdate:
         wall = meshes.prisms(walls, 0.0, WALL_HEIGHT, style.WALL)
         entities.append(_entity("walls", solids=[wall]))
     for index, obstacle in enumerate(scenario.obstacles):
-        solid = meshes.prisms([obstacle.outline()], 0.0, OBSTACLE_HEIGHT, style.OBSTACLE)
+        solid = meshes.prisms(obstacle.pieces(), 0.0, OBSTACLE_HEIGHT, style.OBSTACLE)
         about = obstacle.model_dump(mode="json", exclude={"motion"})
         entities.append(_entity(f"obstacles[{index}]", solids=[solid], about=about))
     return SceneUpdate(entities=entities)

@@ -89,9 +89,9 @@ def draw_run(axes: Axes, trajectory: Trajectory, *, targets: bool = True) -> dic
 
 def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     scenario = trajectory.scenario
-    width, depth = scenario.arena.size
-    axes.set_xlim(0.0, width)
-    axes.set_ylim(0.0, depth)
+    left, bottom, right, top = scenario.arena.bounds
+    axes.set_xlim(left, right)
+    axes.set_ylim(bottom, top)
     axes.set_aspect("equal")
     hit = trajectory.collision
     for index, obstacle in enumerate(scenario.obstacles):

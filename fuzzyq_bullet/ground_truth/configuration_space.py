@@ -215,11 +215,11 @@ def _by_discs(world: ConfigurationSpace, centre: Floats, radius: float) -> Float
 
 
 def _by_walls(world: ConfigurationSpace, centre: Floats, radius: float) -> Floats:
-    if world.field.arena is None:
+    if world.field.walls is None:
         return np.zeros((0, 2))
-    (x, y), (width, depth) = centre, world.field.arena
+    (x, y), (left, bottom, right, top) = centre, world.field.walls
     inset = world.radius - GRAZE
-    gap = np.array([width - inset - x, depth - inset - y, x - inset, y - inset])
+    gap = np.array([right - inset - x, top - inset - y, x - left - inset, y - bottom - inset])
     meets = gap < radius
     half = np.arccos(np.clip(gap[meets] / radius, -1.0, 1.0))
     return _intervals(np.arange(4.0)[meets] * (math.pi / 2), half)

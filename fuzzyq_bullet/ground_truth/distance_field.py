@@ -31,7 +31,9 @@ class DistanceField:
     def __init__(self, scenario: Scenario, room: float | None = None) -> None:
         if room is None:
             room = scenario.robot.spec.radius + SPARE
-        grid = OccupancyGrid.over((0.0, 0.0), scenario.arena.size, CELL)
+        left, bottom, right, top = scenario.arena.bounds
+        self._low = left, bottom
+        grid = OccupancyGrid.over((left, bottom), (right, top), CELL)
         points = grid.points()
         field = Field.of(scenario.obstacles, scenario.arena)
         grid.free[:] = (field.clearance(points.reshape(-1, 2)) >= room).reshape(grid.free.shape)
@@ -45,7 +47,8 @@ class DistanceField:
 
     def at(self, x: float, y: float) -> float:
         """Return the length of the shortest path from a point (m)."""
-        [length] = map_coordinates(self._lengths, [[x / CELL], [y / CELL]], order=1, mode="nearest")
+        at = [[(x - self._low[0]) / CELL], [(y - self._low[1]) / CELL]]
+        [length] = map_coordinates(self._lengths, at, order=1, mode="nearest")
         return float(length)
 
 

@@ -65,11 +65,11 @@ def run_data(trajectory: Trajectory) -> dict[str, Any]:
 
 
 def _field(trajectory: Trajectory) -> dict[str, Any]:
-    """Return what stands there; an obstacle is the hull of its corners, grown by a radius."""
+    """Return what stands there; an obstacle is the polygon of its corners, grown by a radius."""
     scenario = trajectory.scenario
     solids = (obstacle.corners() for obstacle in scenario.obstacles)
     return {
-        "size": list(scenario.arena.size),
+        "bounds": list(scenario.arena.bounds),
         "walls": scenario.arena.walls,
         "extent": [_number(edge) for edge in extent_of(trajectory)],
         "start": list(scenario.start.position),

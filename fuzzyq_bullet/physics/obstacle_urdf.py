@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
 
@@ -15,38 +18,49 @@ OBSTACLE_HEIGHT = 0.4
 """Height of every obstacle (m): well above the robot."""
 WALL_HEIGHT = 0.25
 WALL_THICKNESS = 0.1
+_PRISMS = "prisms.obj"
 
 
 def obstacles_urdf(obstacles: Sequence[Shape]) -> tuple[str, dict[str, str]]:
-    """Return a URDF with one link that holds a collision shape for every obstacle.
+    """Return a URDF with one link that holds collision shapes for every obstacle.
 
     Returns:
         The text, and the mesh files beside it that it names, text by name.
     """
     shapes: list[str] = []
-    meshes: dict[str, str] = {}
+    prisms: list[NDArray[np.float64]] = []
     for obstacle in obstacles:
-        solid = obstacle.collision(OBSTACLE_HEIGHT)
-        geometry = solid.geometry
-        if solid.mesh:
-            name = f"{len(meshes)}.obj"
-            meshes[name] = solid.mesh
-            geometry = f'<mesh filename="{name}"/>'
-        shapes.append(_shape(*obstacle.position, OBSTACLE_HEIGHT, solid.yaw, geometry))
-    return _static("obstacles", shapes), meshes
+        for solid in obstacle.collisions(OBSTACLE_HEIGHT):
+            if solid.prism is None:
+                place = (*obstacle.position, OBSTACLE_HEIGHT, solid.yaw)
+                shapes.append(_shape(*place, solid.geometry))
+            else:
+                prisms.append(np.add(solid.prism, (*obstacle.position, 0.0)))
+    if prisms:
+        mesh = f'<mesh filename="{_PRISMS}"/>'
+        shapes.append(_shape(0.0, 0.0, OBSTACLE_HEIGHT, 0.0, mesh))
+    return _static("obstacles", shapes), {_PRISMS: _obj(prisms)} if prisms else {}
+
+
+def _obj(prisms: Sequence[NDArray[np.float64]]) -> str:
+    """Return an OBJ file of convex prisms: PyBullet makes a convex hull of each of its objects."""
+    lines: list[str] = []
+    base = 1
+    for number, vertices in enumerate(prisms):
+        lines.append(f"o {number}")
+        lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+        half = len(vertices) // 2
+        lines += [f"f {base + k} {base + (k + 1) % half} {base + k + half}" for k in range(half)]
+        base += len(vertices)
+    return "\n".join([*lines, ""])
 
 
 def walls_urdf(arena: Arena) -> str:
     """Return a URDF of the four walls, which stand just outside the arena's rectangle."""
-    width, depth = arena.size
-    half, long = WALL_THICKNESS / 2, width + 2 * WALL_THICKNESS
-    walls = (
-        (width / 2, -half, long, WALL_THICKNESS),
-        (width / 2, depth + half, long, WALL_THICKNESS),
-        (-half, depth / 2, WALL_THICKNESS, depth),
-        (width + half, depth / 2, WALL_THICKNESS, depth),
-    )
-    solids = [(x, y, f'<box size="{a!r} {b!r} {WALL_HEIGHT!r}"/>') for x, y, a, b in walls]
+    solids = [
+        (x, y, f'<box size="{a!r} {b!r} {WALL_HEIGHT!r}"/>')
+        for x, y, a, b in arena.bars(WALL_THICKNESS)
+    ]
     return _static("walls", [_shape(x, y, WALL_HEIGHT, 0.0, box) for x, y, box in solids])
 
 

@@ -28,6 +28,8 @@ Point: TypeAlias = tuple[float, float, float]
 Outline = NDArray[np.float64]
 Mesh = tuple[list[list[float]], list[int]]
 
+MOST_RAYS = 16_384
+"""Most rays that PyBullet casts at once."""
 MESH_CORNERS = 30_000
 """Most corners of one mesh; PyBullet silently drops vertices beyond 131072."""
 
@@ -90,15 +92,21 @@ class SensorWorld:
 
         Args:
             starts: Where they start (m).
-            ends: Where they end at the latest (m), as many, at most 16384.
+            ends: Where they end at the latest (m), as many.
 
         Returns:
             The part of each ray that is free, in [0, 1]; 1 where it meets nothing.
         """
-        hits = self._api.rayTestBatch(
-            starts, ends, collisionFilterMask=_FACES, physicsClientId=self.engine.client
-        )
-        return list(map(_FRACTION, hits))
+        told: list[float] = []
+        for k in range(0, len(starts), MOST_RAYS):
+            hits = self._api.rayTestBatch(
+                starts[k : k + MOST_RAYS],
+                ends[k : k + MOST_RAYS],
+                collisionFilterMask=_FACES,
+                physicsClientId=self.engine.client,
+            )
+            told += map(_FRACTION, hits)
+        return told
 
     def close(self) -> None:
         """Free the engine if it was made here."""
@@ -147,8 +155,7 @@ def meshes(obstacles: Sequence[Shape], arena: Arena) -> Iterator[Mesh]:
     """Yield vertices and triangle indices of meshes that together show every face."""
     outlines = [obstacle.faces() for obstacle in obstacles]
     if arena.walls:
-        width, depth = arena.size
-        outlines.append(np.array([(0, 0), (width, 0), (width, depth), (0, depth)], dtype=float))
+        outlines.append(np.array(arena.bounds.corners))
     batch: list[Outline] = []
     corners = 0
     for outline in outlines:

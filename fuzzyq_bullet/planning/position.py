@@ -28,17 +28,30 @@ class Cells:
         columns: How many side by side.
         rows: How many one above the other.
         side: Of each (m).
+        origin: Lower left corner of the first (m).
     """
 
     columns: int
     rows: int
     side: float
+    origin: tuple[float, float] = (0.0, 0.0)
 
     @classmethod
-    def over(cls, size: tuple[float, float], unit: float = STEP_UNIT) -> Cells:
-        """Return cells over an arena of this size (m) for a robot of this radius (m)."""
+    def over(
+        cls,
+        size: tuple[float, float],
+        unit: float = STEP_UNIT,
+        origin: tuple[float, float] = (0.0, 0.0),
+    ) -> Cells:
+        """Return cells over an arena of this size (m) for a robot of this radius (m).
+
+        Args:
+            size: Width and depth of the arena (m).
+            unit: Radius of the robot (m).
+            origin: Lower left corner of the arena (m).
+        """
         side = LONGEST_STRIDE * unit
-        return cls(math.ceil(size[0] / side), math.ceil(size[1] / side), side)
+        return cls(math.ceil(size[0] / side), math.ceil(size[1] / side), side, origin)
 
     @property
     def count(self) -> int:
@@ -48,8 +61,8 @@ class Cells:
     def state_of(self, position: tuple[float, float]) -> int:
         """Return the number of the cell that holds a position (m), or of the nearest."""
         column, row = (
-            min(max(int(at // self.side), 0), most - 1)
-            for at, most in zip(position, (self.columns, self.rows), strict=True)
+            min(max(int((at - low) // self.side), 0), most - 1)
+            for at, low, most in zip(position, self.origin, (self.columns, self.rows), strict=True)
         )
         return row * self.columns + column
 

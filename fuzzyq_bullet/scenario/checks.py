@@ -17,6 +17,7 @@ from fuzzyq_bullet.problems import MAX_SHOWN, Loc, key_path
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.places import Arena, Bounds
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.shapes.motion import STILL
 
@@ -56,14 +57,12 @@ def check(scenario: Scenario) -> None:
 
 def _places(scenario: Scenario) -> list[Conflict]:
     found: list[Conflict] = []
-    width, depth = scenario.arena.size
+    left, bottom, right, top = scenario.arena.bounds
     for key, place in (("start", scenario.start), ("goal", scenario.goal)):
         x, y = place.position
-        gap = min(x, width - x, y, depth - y)
+        gap = min(x - left, right - x, y - bottom, top - y)
         if gap < 0.0:
-            found.append(
-                ((key, "position"), f"({x:g}, {y:g}) is outside the arena, {width:g} × {depth:g} m")
-            )
+            found.append(((key, "position"), f"({x:g}, {y:g}) is outside {_named(scenario.arena)}"))
         elif scenario.arena.walls and gap <= scenario.robot.radius + TOUCH:
             found.append(
                 (
@@ -95,12 +94,11 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
             message += _remedy(gaps[i], radius)
             by_index[i] = (("obstacles", i), message)
     if scenario.arena.walls:
-        width, depth = scenario.arena.size
         for i, item in enumerate(scenario.obstacles):
-            if _is_outside(item, width, depth):
+            if _is_outside(item, scenario.arena.bounds):
                 by_index[i] = (
                     ("obstacles", i, "position"),
-                    f"is wholly outside the walls of the arena, {width:g} × {depth:g} m",
+                    f"is wholly outside the walls of {_named(scenario.arena)}",
                 )
     return [by_index[i] for i in sorted(by_index)]
 
@@ -121,15 +119,26 @@ def _random(scenario: Scenario) -> list[Conflict]:
     return [(("random", *loc), why) for loc, why in scenario.random.conflicts(scenario)]
 
 
-def _is_outside(item: Obstacle, width: float, depth: float) -> bool:
+def _named(arena: Arena) -> str:
+    """Say where the arena is."""
+    width, depth = arena.size
+    where = f" from ({arena.origin[0]:g}, {arena.origin[1]:g})" if any(arena.origin) else ""
+    return f"the arena, {width:g} × {depth:g} m{where}"
+
+
+def _is_outside(item: Obstacle, bounds: Bounds) -> bool:
     """Tell whether no part of an obstacle is inside the arena (exactly)."""
     points, radius = item.corners()
+    low, high = points.min(axis=0), points.max(axis=0)
+    left, bottom, right, top = bounds
     if len(points) == 1:
         (x, y), *_ = points.tolist()
-        beside_x, beside_y = max(-x, x - width, 0.0), max(-y, y - depth, 0.0)
+        beside_x, beside_y = max(left - x, x - right, 0.0), max(bottom - y, y - top, 0.0)
         return math.hypot(beside_x, beside_y) >= radius
-    arena = np.array([(0.0, 0.0), (width, 0.0), (width, depth), (0.0, depth)])
-    return separated(arena, item.outline())
+    if left < low[0] < right and bottom < low[1] < top and high[0] < right and high[1] < top:
+        return False
+    arena = np.array(bounds.corners)
+    return all(separated(arena, piece) for piece in item.pieces())
 
 
 def _remedy(gap: float, radius: float) -> str:

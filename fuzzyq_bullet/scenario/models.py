@@ -1,8 +1,8 @@
 """What a run is asked to do: the scenario file as typed, validated models, and its JSON Schema.
 
-Metres, seconds and radians throughout; the arena's lower left corner is the origin, x to the
-right and y up (REP 103). Geometry that only makes sense together (overlaps, walls) is checked in
-``scenario.checks``; files and line numbers are the business of ``scenario.files``.
+Metres, seconds and radians throughout; x to the right and y up (REP 103). Geometry that only makes
+sense together (overlaps, walls) is checked in ``scenario.checks``; files and line numbers are the
+business of ``scenario.files``.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ from fuzzyq_bullet.quantities import (
     Count,
     Model,
     Number,
+    Point,
 )
 from fuzzyq_bullet.scenario.expectations import (
     ANY_NAME,
@@ -154,6 +155,25 @@ class Scenario(Model):
             if item.get("motion") == _AT_REST:
                 del item["motion"]
         return told
+
+    def moved(self, x: float, y: float) -> Scenario:
+        """Return the same scenario elsewhere: arena, start, goal and obstacles moved (m).
+
+        The places of obstacles are rounded to 0.1 mm.
+        """
+
+        def there(point: Point) -> Point:
+            return point[0] + x, point[1] + y
+
+        return self.model_copy(
+            update={
+                "arena": self.arena.model_copy(update={"origin": there(self.arena.origin)}),
+                "start": self.start.model_copy(update={"position": there(self.start.position)}),
+                "goal": self.goal.model_copy(update={"position": there(self.goal.position)}),
+                "obstacles": tuple(one.moved(x, y, 0.0) for one in self.obstacles),
+                "random": None if self.random is None else self.random.moved(x, y),
+            }
+        )
 
     def start_heading(self) -> float:
         """Return the heading at the start (rad); towards the goal when none is given."""

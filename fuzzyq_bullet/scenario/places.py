@@ -2,11 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, NamedTuple
 
-from pydantic import Field
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 
 from fuzzyq_bullet.quantities import Angle, Flag, Length, Model, Number, Point
+
+
+class Bounds(NamedTuple):
+    """The edges of a rectangle along the axes (m)."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @property
+    def corners(self) -> list[tuple[float, float]]:
+        """Its corners (m), anticlockwise from the lower left."""
+        x0, y0, x1, y1 = self
+        return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+
+    def holds(self, x: float, y: float) -> bool:
+        """Whether a point (m) is within it, or on its edge."""
+        return self.left <= x <= self.right and self.bottom <= y <= self.top
+
+    def __str__(self) -> str:
+        return f"x {self.left:g} to {self.right:g} m, y {self.bottom:g} to {self.top:g} m"
 
 
 class Arena(Model):
@@ -14,6 +36,39 @@ class Arena(Model):
 
     size: tuple[Length, Length] = Field(default=(10.0, 10.0), description="Width and depth (m).")
     walls: Flag = Field(default=True, description="Whether walls stand on its four edges.")
+    origin: Point = Field(default=(0.0, 0.0), description="Its lower left corner (m).")
+
+    @model_serializer(mode="wrap")
+    def _without_usual_origin(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out an origin at (0, 0): fields known by their hash stay the same."""
+        told: dict[str, Any] = handler(self)
+        if self.origin == (0.0, 0.0):
+            told.pop("origin", None)
+        return told
+
+    @property
+    def bounds(self) -> Bounds:
+        """Its edges (m)."""
+        (x, y), (width, depth) = self.origin, self.size
+        return Bounds(x, y, x + width, y + depth)
+
+    def bars(self, thick: float) -> list[tuple[float, float, float, float]]:
+        """Return its four walls, which stand just outside.
+
+        Args:
+            thick: Their thickness (m).
+
+        Returns:
+            South, north, west and east; of each the centre and the size along x and y (m).
+        """
+        (x, y), (width, depth) = self.origin, self.size
+        half, long = thick / 2, width + 2 * thick
+        return [
+            (x + width / 2, y - half, long, thick),
+            (x + width / 2, y + (depth + half), long, thick),
+            (x - half, y + depth / 2, thick, depth),
+            (x + (width + half), y + depth / 2, thick, depth),
+        ]
 
 
 class Start(Model):

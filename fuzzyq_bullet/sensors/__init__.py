@@ -7,15 +7,17 @@ from fuzzyq_bullet.sensors.base import (
     SensorModel,
     register_sensor,
 )
-from fuzzyq_bullet.sensors.corridor import SENSOR_MARGIN, SPREAD, CorridorSensor
+from fuzzyq_bullet.sensors.corridor import SENSOR_MARGIN, SPREAD, WIDEST, CorridorSensor, offsets
 
 __all__ = [
     "SENSORS",
     "SENSOR_MARGIN",
     "SPREAD",
+    "WIDEST",
     "AnySensor",
     "CorridorSensor",
     "ExactSensor",
     "SensorModel",
+    "offsets",
     "register_sensor",
 ]

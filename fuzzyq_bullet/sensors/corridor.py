@@ -26,10 +26,37 @@ SENSOR_MARGIN = 0.02
 SPREAD = np.array([0.11, 0.33, 0.55, 0.75, 0.91, 1.0])
 """Offsets of the rays on either side, as parts of the line's half width.
 
-Neighbours are at most 0.0484 m apart, less than the least width of an obstacle, and denser towards
-the rim, where the front of the disc falls back ever faster. The last but one runs just outside the
-robot's own side, so that not even the flattest graze along a wall gets past it.
+Neighbours are at most 0.0484 m apart for the paper's robot, and denser towards the rim, where the
+front of the disc falls back ever faster. The last but one runs just outside the robot's own side,
+so that not even the flattest graze along a wall gets past it. Where that is too far apart, for a
+larger robot or for thinner obstacles, there are more of them (``offsets``).
 """
+WIDEST = 0.05
+"""Rays are always nearer to each other than this (m): a right angle that points between two of them
+then comes no nearer than half of it unseen, which the safety filter's reserve makes up for."""
+
+
+def offsets(half_width: float, spacing: float = WIDEST) -> Floats:
+    """Return the offsets of rays on either side, as parts of a line's half width.
+
+    They are those of ``SPREAD``, and as many in between as are needed.
+
+    Args:
+        half_width: Half the width of a line (m).
+        spacing: Neighbours are less than this apart (m); ``WIDEST`` at most.
+    """
+    spacing = min(spacing, WIDEST)
+    ends = np.append(-SPREAD[0], SPREAD)
+    parts = (np.diff(ends) * half_width / spacing).astype(int) + 1
+    parts[0] += 1 - parts[0] % 2  # odd: the rays in the middle are as many on either side
+    found = [
+        low + (high - low) * np.arange(1, count + 1) / count
+        for low, high, count in zip(ends[:-1], ends[1:], parts.tolist(), strict=True)
+    ]
+    if parts.max() == 1:
+        return SPREAD
+    every = np.concatenate(found)
+    return np.asarray(every[every > 0.0])
 
 
 class CorridorSensor:
@@ -47,6 +74,7 @@ class CorridorSensor:
         cast: Casts rays.
         robot: The robot, whose radius, sensor height and range they have.
         rng: Random numbers of the model.
+        spacing: How far apart rays of a line may be (m): the width of the thinnest obstacle.
 
     Attributes:
         radius: Half the width of a detection line (m).
@@ -54,7 +82,12 @@ class CorridorSensor:
     """
 
     def __init__(
-        self, model: SensorModel, cast: Cast, robot: RobotModel, rng: np.random.Generator
+        self,
+        model: SensorModel,
+        cast: Cast,
+        robot: RobotModel,
+        rng: np.random.Generator,
+        spacing: float = WIDEST,
     ) -> None:
         self._model = model
         self._cast = cast
@@ -62,7 +95,7 @@ class CorridorSensor:
         self._rng = rng
         self.radius = wide = robot.radius + SENSOR_MARGIN
         self.range = robot.sensor_range
-        aside = wide * SPREAD
+        aside = wide * offsets(wide, spacing)
         rims = np.sqrt(wide**2 - aside**2)
         self._rims = np.repeat(rims, 2)
         self._lengths = np.append(np.repeat(rims + self.range, 2), [SENSOR_MARGIN] * 2)

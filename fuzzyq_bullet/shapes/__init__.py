@@ -12,12 +12,15 @@ from fuzzyq_bullet.shapes.base import (
     Shape,
     ShapeGroup,
     register_shape,
+    thinnest,
 )
 
 from fuzzyq_bullet.shapes.cylinder import ROUNDNESS, Cylinder, Cylinders  # isort: skip
 from fuzzyq_bullet.shapes.box import Box, Boxes
 from fuzzyq_bullet.shapes.convex import ConvexPolygons, ConvexShape
 from fuzzyq_bullet.shapes.motion import MOTIONS, Motion, Pose, Still, register_motion
+from fuzzyq_bullet.shapes.polygon import Polygon
+from fuzzyq_bullet.shapes.polygons import Polygons
 
 __all__ = [
     "GRAZE",
@@ -33,10 +36,13 @@ __all__ = [
     "Cylinders",
     "Motion",
     "Obstacle",
+    "Polygon",
+    "Polygons",
     "Pose",
     "Shape",
     "ShapeGroup",
     "Still",
     "register_motion",
     "register_shape",
+    "thinnest",
 ]

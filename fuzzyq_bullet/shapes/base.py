@@ -14,7 +14,7 @@ from fuzzyq_bullet.quantities import DECIMALS, Model, ModelRegistry, Point
 from fuzzyq_bullet.shapes.motion import STILL, AnyMotion
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from typing_extensions import Self
 
@@ -23,6 +23,10 @@ Mask: TypeAlias = NDArray[np.bool_]
 
 GRAZE = 1e-9
 """A path that would cut less deep than this (m) into something round only grazes it."""
+_TOGETHER = 48
+"""Points whose clearance is told at once; beside each other they share what is near them."""
+_CHUNK = 1_000_000
+"""Most distances held in memory at once by ``ShapeGroup.clearance``."""
 PARALLEL = 1e-12
 """A direction closing in on a flat face slower than this (m per m) runs along it: cos(π/2) ≠ 0."""
 
@@ -33,12 +37,13 @@ class Collision(NamedTuple):
     Attributes:
         geometry: What a URDF has within ``<geometry>``.
         yaw: Turn about its upright axis (rad).
-        mesh: Text of an OBJ file about the shape's centre, convex; ``geometry`` is empty then.
+        prism: Vertices about the shape's centre (m), shape (2·K, 3), of a convex prism: first those
+            below, then those above them; ``geometry`` is empty then.
     """
 
     geometry: str
     yaw: float = 0.0
-    mesh: str = ""
+    prism: Floats | None = None
 
 
 class Shape(Model, ABC):
@@ -63,16 +68,33 @@ class Shape(Model, ABC):
     def corners(self) -> tuple[Floats, float]:
         """Return points, shape (K, 2), anticlockwise, and a radius (m).
 
-        The shape is the convex hull of the points, grown by the radius. A circle is one point.
+        The shape is the polygon of the points, grown by the radius. A circle is one point.
         """
 
     @abstractmethod
     def outline(self, corners: int = 24) -> Floats:
-        """Return what it looks like from above, a convex polygon, shape (K, 2), anticlockwise.
+        """Return what it looks like from above, a simple polygon, shape (K, 2), anticlockwise.
 
         Args:
             corners: How many corners something round gets.
         """
+
+    def pieces(self, corners: int = 24) -> list[Floats]:
+        """Return convex polygons, each anticlockwise, that together are the outline.
+
+        One, unless the outline is concave. Neighbours share whole sides.
+
+        Args:
+            corners: How many corners something round gets.
+        """
+        return [self.outline(corners)]
+
+    def thickness(self) -> float:
+        """Return the width (m) of its thinnest part, which rays nearer to each other surely see.
+
+        Of what points outwards, a right angle is not thin; a sharper angle is.
+        """
+        return least_width(self.outline())
 
     @abstractmethod
     def faces(self) -> Floats:
@@ -82,8 +104,8 @@ class Shape(Model, ABC):
         """
 
     @abstractmethod
-    def collision(self, height: float) -> Collision:
-        """Return the solid of that height (m) that the robot's body meets."""
+    def collisions(self, height: float) -> list[Collision]:
+        """Return the convex solids of that height (m) that the robot's body meets."""
 
     def extent(self) -> float:
         """Return the radius (m) of a circle about the centre that holds all of it."""
@@ -125,6 +147,31 @@ class ShapeGroup(ABC):
             y: Of the points (m), shape (K, 1).
             which: Shape (N,): answer for these only.
         """
+
+    def clearance(self, points: Floats) -> Floats:
+        """Return the signed distance (m) from each point to the nearest obstacle, shape (K,).
+
+        Args:
+            points: Shape (K, 2), in metres.
+        """
+        result = np.empty(len(points))
+        rows = max(1, min(_TOGETHER, _CHUNK // len(self)))
+        for k in range(0, len(points), rows):
+            here = points[k : k + rows]
+            told = self.distances(here[:, :1], here[:, 1:], self._near(here))
+            result[k : k + rows] = told.min(axis=1)
+        return result
+
+    def _near(self, p: Floats) -> Mask | None:
+        """Return which obstacles, shape (N,), may be nearest to any of the points p."""
+        if len(p) == 1 or not np.isfinite(p).all():
+            return None
+        middle = (p.min(axis=0) + p.max(axis=0)) / 2.0
+        around = float(np.abs(p - middle).sum(axis=1).max())
+        # No point is farther from the middle than this, so no distance differs by more from there.
+        to = self.distances(middle[None, :1], middle[None, 1:])[0]
+        near: Mask = to <= to.min() + 2.0 * around + GRAZE
+        return near
 
     @abstractmethod
     def free_distances(self, x: float, y: float, ux: Floats, uy: Floats, radius: float) -> Floats:
@@ -190,6 +237,41 @@ def register_shape(shape: _S) -> _S:
     """
     SHAPES.add(shape)
     return shape
+
+
+def thinnest(shapes: Iterable[Shape]) -> float:
+    """Return the width (m) of the thinnest part of all shapes; infinite if there are none."""
+    return min((shape.thickness() for shape in shapes), default=math.inf)
+
+
+def least_width(polygon: Floats) -> float:
+    """Return the least width (m) of a convex polygon, shape (K, 2), anticlockwise."""
+    side = np.roll(polygon, -1, axis=0) - polygon
+    normals = np.column_stack([-side[:, 1], side[:, 0]]) / np.hypot(*side.T)[:, None]
+    depth = polygon @ normals.T
+    return float((depth - np.diagonal(depth)).max(axis=0).min())
+
+
+def part_within(normals: Floats, levels: Floats, radius: float) -> Floats:
+    """Return the parts of a circle about the origin where n·p ≤ level for all lines.
+
+    Args:
+        normals: Shape (L, 2), unit vectors.
+        levels: Shape (L,) (m).
+        radius: Of the circle (m).
+
+    Returns:
+        Shape (C, 2): where each begins, in [0, 2π), and how far it goes (rad).
+    """
+    bearing = np.arctan2(normals[:, 1], normals[:, 0])
+    half = np.arccos(np.clip(levels / radius, -1.0, 1.0))
+    cuts = np.concatenate([[0.0], bearing - half, bearing + half])
+    cuts = np.append(np.sort(np.remainder(cuts, math.tau)), math.tau)
+    begin, extent = cuts[:-1], np.diff(cuts)
+    middle = begin + extent / 2
+    point = radius * np.column_stack([np.cos(middle), np.sin(middle)])
+    inside = (extent > 0.0) & np.all(point @ normals.T < levels, axis=1)
+    return np.column_stack([begin[inside], extent[inside]])
 
 
 def reach_of_circles(mx: Floats, my: Floats, ux: Floats, uy: Floats, r: Floats) -> Floats:

@@ -156,10 +156,14 @@ class Box(Shape):
         """Return the four corners."""
         return self.corners()[0]
 
-    def collision(self, height: float) -> Collision:
+    def collisions(self, height: float) -> list[Collision]:
         """Return an exact box."""
         length, width = self.size
-        return Collision(f'<box size="{length!r} {width!r} {height!r}"/>', self.yaw)
+        return [Collision(f'<box size="{length!r} {width!r} {height!r}"/>', self.yaw)]
+
+    def thickness(self) -> float:
+        """Return its shorter side (m)."""
+        return min(self.size)
 
     def extent(self) -> float:
         """Return half the diagonal (m)."""

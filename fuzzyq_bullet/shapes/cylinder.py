@@ -88,6 +88,10 @@ class Cylinder(Shape):
         local = radius * np.column_stack([np.cos(angle), np.sin(angle)])
         return np.asarray(local + self.position)
 
-    def collision(self, height: float) -> Collision:
+    def collisions(self, height: float) -> list[Collision]:
         """Return an exact cylinder."""
-        return Collision(f'<cylinder radius="{self.radius!r}" length="{height}"/>')
+        return [Collision(f'<cylinder radius="{self.radius!r}" length="{height}"/>')]
+
+    def thickness(self) -> float:
+        """Return its diameter (m)."""
+        return 2 * self.radius

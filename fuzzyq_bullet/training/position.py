@@ -32,7 +32,7 @@ class PositionProblem:
     """
 
     def __init__(self, scenario: Scenario) -> None:
-        self.cells = Cells.over(scenario.arena.size, scenario.robot.radius)
+        self.cells = Cells.over(scenario.arena.size, scenario.robot.radius, scenario.arena.origin)
         self._scenario = scenario
         self._field = Field.of(scenario.obstacles, scenario.arena)
 

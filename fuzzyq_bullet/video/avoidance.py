@@ -51,7 +51,7 @@ class Avoidance:
     def __init__(self, trajectory: Trajectory) -> None:
         scenario, decisions = trajectory.scenario, trajectory.decisions
         self._obstacles = scenario.obstacles
-        self._arena = scenario.arena.size if scenario.arena.walls else None
+        self._arena = scenario.arena.bounds if scenario.arena.walls else None
         self._field = Field.of(scenario.obstacles)
         self._centres = np.array([o.position for o in scenario.obstacles]).reshape(-1, 2)
         self._extents = np.array([o.extent() for o in scenario.obstacles])
@@ -91,8 +91,8 @@ class Avoidance:
         """Return the ends of a wall (m), shape (2, 2); None for obstacles."""
         if group >= 0 or self._arena is None:
             return None
-        x, y = self._arena
-        corners = ((0.0, 0.0), (0.0, y), (x, y), (x, 0.0), (0.0, 0.0))
+        left, bottom, right, top = self._arena
+        corners = ((left, bottom), (left, top), (right, top), (right, bottom), (left, bottom))
         return np.array(corners[-group - 1 : -group + 1])
 
     def _nearest(self, point: tuple[float, float], held: int | None) -> int | None:
@@ -100,8 +100,8 @@ class Avoidance:
         distances = self._field.distances(point)
         walls = [math.inf] * _SIDES
         if self._arena is not None:
-            (x, y), (wide, deep) = point, self._arena
-            walls = [x, deep - y, wide - x, y]
+            (x, y), (left, bottom, right, top) = point, self._arena
+            walls = [x - left, top - y, right - x, y - bottom]
         least = min(float(distances.min(initial=math.inf)), *walls)
         if not math.isfinite(least):
             return None
@@ -130,10 +130,23 @@ class Avoidance:
         gaps = np.hypot(*(self._centres - self._centres[index]).T) - self._extents
         near = np.flatnonzero(gaps <= self._extents[index] + _TOUCHING).tolist()
         here = self._grown(index)
-        return [k for k in near if k != index and len(clipped(self._grown(k), here))]
+        return [
+            k
+            for k in near
+            if k != index and any(len(clipped(a, b)) for a in self._grown(k) for b in here)
+        ]
 
-    def _grown(self, index: int) -> Floats:
-        """Return an obstacle's outline (m), a little larger."""
-        centre, size = self._centres[index], self._extents[index]
-        outline = self._obstacles[index].outline()
-        return np.asarray(centre + (outline - centre) * (1.0 + _TOUCHING / 2 / size))
+    def _grown(self, index: int) -> list[Floats]:
+        """Return an obstacle's convex pieces (m), a little larger."""
+        pieces = self._obstacles[index].pieces()
+        if len(pieces) == 1:
+            return [_grown(pieces[0], self._centres[index], self._extents[index])]
+        middles = [piece.mean(axis=0) for piece in pieces]
+        return [
+            _grown(piece, middle, float(np.hypot(*(piece - middle).T).max()))
+            for piece, middle in zip(pieces, middles, strict=True)
+        ]
+
+
+def _grown(outline: Floats, centre: Floats, size: float) -> Floats:
+    return np.asarray(centre + (outline - centre) * (1.0 + _TOUCHING / 2 / size))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _CHUNK = 400
 """Obstacles of one mesh: PyBullet holds at most 131072 corners a shape."""
-EVERYWHERE: Floats = 1e3 * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+EVERYWHERE: Floats = 2e3 * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 """A piece of ground (m) that holds every arena, for who can look at all of it."""
 _CIRCLE = np.stack([f(np.linspace(0.0, math.tau, 32, endpoint=False)) for f in (np.cos, np.sin)], 1)
 _DOWN = 0.05
@@ -42,12 +42,14 @@ def ground_of(scenario: Scenario, seen: Floats) -> Floats:
     """Return the outline (m) of the ground: the arena, or all there is to see without walls."""
     if not scenario.arena.walls:
         return seen
-    width, depth = scenario.arena.size
-    return clipped(np.array([(0.0, 0.0), (width, 0.0), (width, depth), (0.0, depth)]), seen)
+    return clipped(np.array(scenario.arena.bounds.corners), seen)
 
 
 def obstacles_seen(scenario: Scenario, lens: Lens, seen: Floats) -> list[Floats]:
-    """Return the outlines (m) of the obstacles in sight, cut off well outside the picture."""
+    """Return outlines (m) of the obstacles in sight, cut off well outside the picture.
+
+    They are convex; a concave obstacle has several.
+    """
     outlines = []
     low, high = seen.min(axis=0), seen.max(axis=0)
     for obstacle in scenario.obstacles:
@@ -55,9 +57,10 @@ def obstacles_seen(scenario: Scenario, lens: Lens, seen: Floats) -> list[Floats]
         x, y = obstacle.position
         if x + reach < low[0] or x - reach > high[0] or y + reach < low[1] or y - reach > high[1]:
             continue
-        outline = clipped(obstacle.outline(_corners(obstacle, lens)), seen)
-        if len(outline) >= 3:
-            outlines.append(outline)
+        for piece in obstacle.pieces(_corners(obstacle, lens)):
+            outline = clipped(piece, seen)
+            if len(outline) >= 3:
+                outlines.append(outline)
     return outlines
 
 
@@ -65,18 +68,10 @@ def walls_of(scenario: Scenario, seen: Floats) -> list[Floats]:
     """Return the outlines (m) of the walls in sight."""
     if not scenario.arena.walls:
         return []
-    width, depth = scenario.arena.size
-    thick = WALL_THICKNESS
-    bars = (
-        ((width / 2, -thick / 2), (width + 2 * thick, thick)),
-        ((width / 2, depth + thick / 2), (width + 2 * thick, thick)),
-        ((-thick / 2, depth / 2), (thick, depth)),
-        ((width + thick / 2, depth / 2), (thick, depth)),
-    )
     outlines = []
-    for centre, size in bars:
-        half = np.array(size) / 2
-        square = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * half + centre
+    for x, y, along_x, along_y in scenario.arena.bars(WALL_THICKNESS):
+        half = np.array([along_x, along_y]) / 2
+        square = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * half + (x, y)
         outline = clipped(square, seen)
         if len(outline) >= 3:
             outlines.append(outline)

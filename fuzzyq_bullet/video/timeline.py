@@ -152,7 +152,7 @@ def sensed_at(trajectory: Trajectory, decision: int) -> Sensed | None:
 def _marked(trajectory: Trajectory, point: list[float]) -> tuple[float, float] | None:
     """Return a point (m) that can be marked; None if it is blank, or lies beyond the walls."""
     arena, (x, y) = trajectory.scenario.arena, point
-    inside = 0.0 <= x <= arena.size[0] and 0.0 <= y <= arena.size[1]
+    inside = arena.bounds.holds(x, y)
     return (x, y) if math.isfinite(x + y) and (inside or not arena.walls) else None
 
 

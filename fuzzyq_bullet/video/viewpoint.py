@@ -46,11 +46,11 @@ def extent_of(trajectory: Trajectory, margin: float = MARGIN) -> tuple[float, fl
     margin = max(margin, 0.08 * float((high - low).max()))
     low, high = low - margin, high + margin
     arena = trajectory.scenario.arena
-    size = np.array(arena.size)
-    if (size <= 2.2 * max(high - low)).all():
-        low, high = np.minimum(low, 0.0), np.maximum(high, size)
+    ends = np.array(arena.bounds).reshape(2, 2)
+    if (np.array(arena.size) <= 2.2 * max(high - low)).all():
+        low, high = np.minimum(low, ends[0]), np.maximum(high, ends[1])
     if arena.walls:
-        low, high = np.maximum(low, 0.0), np.minimum(high, size)
+        low, high = np.maximum(low, ends[0]), np.minimum(high, ends[1])
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
@@ -62,7 +62,8 @@ def lens_for(trajectory: Trajectory, points: Floats, size: tuple[int, int]) -> L
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1) * margin
     flat = (points[:, None] + around).reshape(-1, 2)
     if trajectory.scenario.arena.walls:  # nothing happens behind a wall
-        flat = np.clip(flat, -0.1, np.array(trajectory.scenario.arena.size) + 0.1)
+        ends = np.array(trajectory.scenario.arena.bounds).reshape(2, 2)
+        flat = np.clip(flat, ends[0] - 0.1, ends[1] + 0.1)
     low = np.column_stack([flat, np.zeros(len(flat))])
     corners = np.concatenate([low, np.add(low, (0.0, 0.0, OBSTACLE_HEIGHT))])
 

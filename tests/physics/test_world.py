@@ -12,7 +12,15 @@ from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import MIN_RADIUS, Arena, Box, Cylinder
-from fuzzyq_bullet.sensors import SENSOR_MARGIN, SPREAD, CorridorSensor, ExactSensor
+from fuzzyq_bullet.sensors import (
+    SENSOR_MARGIN,
+    SPREAD,
+    WIDEST,
+    CorridorSensor,
+    ExactSensor,
+    offsets,
+)
+from fuzzyq_bullet.shapes import thinnest
 
 FIELD = Arena(size=(6.0, 6.0))
 
@@ -31,8 +39,9 @@ def box(x, y, length, width, yaw=0.0):
     return Box(shape="box", position=(x, y), size=(length, width), yaw=yaw)
 
 
-def sensor_of(world):
-    return CorridorSensor(ExactSensor(), world.cast, FUZZYQ, np.random.default_rng(0))
+def sensor_of(world, spacing=WIDEST):
+    rng = np.random.default_rng(0)
+    return CorridorSensor(ExactSensor(), world.cast, FUZZYQ, rng, spacing)
 
 
 def run_into(world, x, y, heading, speed=0.3, steps=2000):
@@ -163,10 +172,17 @@ def test_nothing_of_the_least_width_slips_between_two_rays(engine):
     for shape in (lambda y: box(2.5, y, least, least), lambda y: cylinder(2.5, y, MIN_RADIUS)):
         for lateral in np.arange(-0.2, 0.2, 0.004):
             world = World([shape(3.0 + lateral)], FIELD, engine=engine)
-            [ahead] = sensor_of(world).sense((2.0, 3.0), [0.0])
+            [ahead] = sensor_of(world, thinnest(world.obstacles)).sense((2.0, 3.0), [0.0])
             assert ahead < 0.5
-    offsets = (FUZZYQ.radius + SENSOR_MARGIN) * np.concatenate([-SPREAD[::-1], SPREAD])
-    assert np.diff(offsets).max() < least
+
+
+@given(st.floats(0.07, 2.02), st.floats(0.02, 1.0))
+def test_rays_are_as_near_to_each_other_as_is_asked_for(half, spacing):
+    aside = half * offsets(half, spacing)
+    both = np.concatenate([-aside[::-1], aside])
+    assert np.diff(both).max() < min(spacing, WIDEST) + 1e-9
+    assert np.abs(aside[:, None] - half * SPREAD).min(axis=0).max() < 1e-9
+    assert offsets(FUZZYQ.radius + SENSOR_MARGIN) is SPREAD  # the paper's robot, usual obstacles
 
 
 @pytest.mark.parametrize("length", [0.6, 4.0])

@@ -85,9 +85,9 @@ export class Field {
     const canvas = html("canvas");
     const pen = sharp(canvas, width, height);
     const colour = colours();
-    const { size, walls, obstacles, start, goal } = this.run.data.field;
-    const [left, bottom] = this.at(0, 0);
-    const [right, top] = this.at(...size);
+    const { bounds, walls, obstacles, start, goal } = this.run.data.field;
+    const [left, bottom] = this.at(bounds[0], bounds[1]);
+    const [right, top] = this.at(bounds[2], bounds[3]);
     pen.fillStyle = colour.ground;
     if (walls) pen.fillRect(left, top, right - left, bottom - top);
     else pen.fillRect(0, 0, width, height);

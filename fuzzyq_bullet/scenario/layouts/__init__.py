@@ -39,7 +39,14 @@ def realise(scenario: Scenario, seed: int | None = None) -> Scenario:
     seed = scenario.seed if seed is None else seed
     if scenario.random is None:
         return scenario.model_copy(update={"seed": seed})
-    drawn = scenario.random.draw(scenario, np.random.default_rng(seed))
+    x, y = scenario.arena.origin
+    rng = np.random.default_rng(seed)
+    if x == y == 0.0:
+        drawn = scenario.random.draw(scenario, rng)
+    else:
+        there = scenario.moved(-x, -y)
+        assert there.random is not None
+        drawn = tuple(one.moved(x, y, 0.0) for one in there.random.draw(there, rng))
     obstacles = (*scenario.obstacles, *drawn)
     return scenario.model_copy(update={"obstacles": obstacles, "random": None, "seed": seed})
 

@@ -9,6 +9,7 @@ from fuzzyq_bullet.shapes import Obstacle
 
 if TYPE_CHECKING:
     import numpy as np
+    from typing_extensions import Self
 
     from fuzzyq_bullet.scenario.models import Scenario
 
@@ -24,6 +25,9 @@ class Layout(Model):
     def draw(self, scenario: Scenario, rng: np.random.Generator) -> tuple[Obstacle, ...]:
         """Return the obstacles, beside those that the scenario lists.
 
+        The arena's lower left corner is at (0, 0) here: ``realise`` moves the scenario there, and
+        the obstacles back.
+
         The same scenario and generator give the same obstacles; none of them overlaps the start or
         the goal disc; coordinates are rounded to 0.1 mm.
 
@@ -31,6 +35,10 @@ class Layout(Model):
             UserError: If they cannot be placed.
         """
         raise NotImplementedError
+
+    def moved(self, x: float, y: float) -> Self:
+        """Return it with the places that it names moved (m); it may name none."""
+        return self
 
     def conflicts(self, scenario: Scenario) -> list[Conflict]:
         """Return what can be known to be impossible without drawing."""

@@ -73,10 +73,12 @@ def leaves_a_way(scenario: Scenario, obstacles: Sequence[Obstacle]) -> bool:
     """
     from scipy.ndimage import label  # only who draws obstacles waits for it to load
 
-    width, depth = scenario.arena.size
+    (left, bottom, right, top), (width, depth) = scenario.arena.bounds, scenario.arena.size
     outside = 0.0 if scenario.arena.walls else _OUTSIDE
     step = max(_STEP, math.sqrt((width + 2 * outside) * (depth + 2 * outside) / _MOST_PLACES))
-    grid = OccupancyGrid.over((-outside, -outside), (width + outside, depth + outside), step)
+    grid = OccupancyGrid.over(
+        (left - outside, bottom - outside), (right + outside, top + outside), step
+    )
     places = grid.points()
     field = Field.of([*scenario.obstacles, *obstacles], scenario.arena)
     clearance = field.clearance(places.reshape(-1, 2)).reshape(grid.free.shape)

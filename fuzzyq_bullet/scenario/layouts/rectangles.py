@@ -107,4 +107,4 @@ def overlap(box: Box, other: Obstacle) -> bool:
     apart = math.dist(box.position, other.position)
     if apart >= box.extent() + other.extent():
         return False
-    return not separated(box.outline(), other.outline())
+    return any(not separated(box.outline(), piece) for piece in other.pieces())

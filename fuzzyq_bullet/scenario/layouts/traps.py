@@ -19,6 +19,7 @@ from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
 if TYPE_CHECKING:
     import numpy as np
+    from typing_extensions import Self
 
     from fuzzyq_bullet.scenario.models import Scenario
 
@@ -53,6 +54,13 @@ class Trap(Layout):
     margin: Annotated[Number, Field(ge=0.0, le=100.0)] = Field(
         default=0.3, description="Least gap to the robot at the start and to the goal disc (m)."
     )
+
+    def moved(self, x: float, y: float) -> Self:
+        """Return it with its middle moved (m), if that is given."""
+        if self.position is None:
+            return self
+        at = (self.position[0] + x, self.position[1] + y)
+        return self.model_copy(update={"position": at})
 
     def build(self, reach: float, rng: np.random.Generator) -> tuple[Obstacle, ...]:
         """Return the trap with its middle at the origin, opening along x.
