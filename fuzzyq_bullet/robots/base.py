@@ -2,33 +2,42 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from fuzzyq_bullet.quantities import Model, Number
+from fuzzyq_bullet.robots.made_urdf import GROUND_CLEARANCE, made_urdf
 from fuzzyq_bullet.wording import not_one_of
 
-MaxSpeed: TypeAlias = Annotated[Number, Field(ge=0.05, le=1.0)]
-MaxTurnRate: TypeAlias = Annotated[Number, Field(ge=0.2, le=3.0)]
-Acceleration: TypeAlias = Annotated[Number, Field(ge=0.1, le=2.0)]
-TurnAcceleration: TypeAlias = Annotated[Number, Field(ge=0.5, le=10.0)]
-_Positive: TypeAlias = Annotated[Number, Field(gt=0.0, le=1000.0)]
+MaxSpeed: TypeAlias = Annotated[Number, Field(ge=0.05, le=3.0)]
+MaxTurnRate: TypeAlias = Annotated[Number, Field(ge=0.2, le=6.0)]
+Acceleration: TypeAlias = Annotated[Number, Field(ge=0.1, le=5.0)]
+TurnAcceleration: TypeAlias = Annotated[Number, Field(ge=0.5, le=20.0)]
+Radius: TypeAlias = Annotated[Number, Field(ge=0.05, le=2.0)]
+Positive: TypeAlias = Annotated[Number, Field(gt=0.0, le=1000.0)]
 
 RANGE_UNITS = 5.0
 """Range of the detection lines, in units of the robot's radius: 5·S_p (Section 3.1)."""
-_GROUND_CLEARANCE = 0.03
-"""Height of the body's underside, and radius of the caster (m)."""
+_CORNERS = 48
+"""Corners of a disc's outline."""
 
 
 class RobotModel(Model):
-    """A differential drive: two driven wheels and a caster under a round body.
+    """A differential drive: two driven wheels and a caster under a body, round or rectangular.
 
     Attributes:
         name: What a scenario calls it: ``robot: {model: NAME}``.
-        radius: Radius of the footprint, a disc (m). It is the paper's unit S_p: the sensor reaches
-            5·S_p, and the controller's steps are multiples of it.
+        size: Length and width of a rectangular footprint (m); by default it is a disc.
+        offset: How far the middle of the rectangle lies ahead of the axle (m).
+        corners: Corners of a footprint that was measured from a URDF (m), counter-clockwise.
+        radius: Radius of the smallest disc about the turning centre that holds the footprint (m).
+            It is the paper's unit S_p: the sensor reaches 5·S_p, and the controller's steps are
+            multiples of it. Planners steer this disc; contact in the physics is with the body.
+            Computed where the footprint is no disc.
         height: Height of the body's lid (m); the sensor looks out half way up the body.
         track: Distance between the wheels (m).
         wheel_radius: Radius of the wheels (m).
@@ -39,24 +48,63 @@ class RobotModel(Model):
         max_turn_rate: Greatest turn rate (rad/s).
         acceleration: Greatest change of speed (m/s²).
         turn_acceleration: Greatest change of the turn rate (rad/s²).
-        urdf_file: A URDF whose base frame lies on the ground between the wheels, x forward, with
-            the driven joints ``left_axle`` and ``right_axle``; by default it is made from the
-            numbers above.
+        urdf_file: A URDF whose base frame lies on the ground between the wheels, x forward; by
+            default it is made from the numbers above.
+        axles: The driven joints of that URDF, left and right.
+        source: Where the numbers are from.
     """
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,99}$")]
-    radius: Annotated[Number, Field(ge=0.05, le=2.0)] = 0.2
-    height: Annotated[Number, Field(gt=_GROUND_CLEARANCE, le=0.24)] = 0.15
-    track: _Positive = 0.28
-    wheel_radius: _Positive = 0.05
-    mass: _Positive = 5.0
-    wheel_mass: _Positive = 0.2
-    motor_torque: _Positive = 3.0
+    size: tuple[Positive, Positive] | None = None
+    offset: Annotated[Number, Field(ge=-1.0, le=1.0)] = 0.0
+    corners: tuple[tuple[Number, Number], ...] = ()
+    radius: Radius = 0.2
+    height: Annotated[Number, Field(gt=GROUND_CLEARANCE, le=0.4)] = 0.15
+    track: Positive = 0.28
+    wheel_radius: Positive = 0.05
+    mass: Positive = 5.0
+    wheel_mass: Positive = 0.2
+    motor_torque: Positive = 3.0
     max_speed: MaxSpeed = 0.6
     max_turn_rate: MaxTurnRate = 2.0
     acceleration: Acceleration = 1.0
     turn_acceleration: TurnAcceleration = 6.0
     urdf_file: Path | None = None
+    axles: tuple[str, str] = ("left_axle", "right_axle")
+    source: str = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_circumscribed_radius(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or "radius" in data:
+            return data
+        points = data.get("corners", ())
+        if data.get("size") is not None:
+            points = rectangle(*data["size"], data.get("offset", 0.0))
+        return {**data, "radius": max(math.hypot(*p) for p in points)} if points else data
+
+    @property
+    def is_disc(self) -> bool:
+        """Whether the footprint is a disc about the turning centre."""
+        return self.size is None and not self.corners
+
+    @property
+    def footprint(self) -> tuple[tuple[float, float], ...]:
+        """Outline of the body seen from above (m), counter-clockwise, in the robot's own frame.
+
+        A disc is a polygon of 48 corners on its circle.
+        """
+        if self.corners:
+            return self.corners
+        if self.size is not None:
+            return rectangle(*self.size, self.offset)
+        angles = [math.tau * k / _CORNERS for k in range(_CORNERS)]
+        return tuple((self.radius * math.cos(a), self.radius * math.sin(a)) for a in angles)
+
+    def footprint_at(self, x: float, y: float, heading: float) -> list[tuple[float, float]]:
+        """Return the outline of the body in the arena (m), at a pose (m, m, rad)."""
+        cos, sin = math.cos(heading), math.sin(heading)
+        return [(x + a * cos - b * sin, y + a * sin + b * cos) for a, b in self.footprint]
 
     @property
     def sensor_range(self) -> float:
@@ -66,7 +114,7 @@ class RobotModel(Model):
     @property
     def sensor_height(self) -> float:
         """Height of the sensor's rays above the ground (m): the middle of the body."""
-        return (_GROUND_CLEARANCE + self.height) / 2
+        return (GROUND_CLEARANCE + self.height) / 2
 
     def wheel_commands(self, speed: float, turn_rate: float) -> tuple[float, float]:
         """Return the wheel speeds (rad/s), left and right, of an ideal differential drive.
@@ -79,78 +127,14 @@ class RobotModel(Model):
         return (speed - half) / self.wheel_radius, (speed + half) / self.wheel_radius
 
     def urdf(self) -> str:
-        """Return a URDF of these numbers: the same build as ``assets/robot.urdf``.
-
-        The centre of mass lies a little towards the caster. Wheels roll on spheres; the caster
-        slides without friction.
-        """
-        r, length = self.radius, self.height - _GROUND_CLEARANCE
-        across = self.mass * (3 * r * r + length * length) / 12
-        body = (
-            f'<visual><origin xyz="0 0 {self.sensor_height!r}"/><geometry>'
-            f'<cylinder radius="{r!r}" length="{length!r}"/></geometry>{_colour(0.93)}</visual>'
-            f'<visual><origin xyz="{r / 3!r} 0 {self.height + 0.003!r}"/><geometry>'
-            f'<box size="{0.9 * r!r} {0.3 * r!r} 0.006"/></geometry>{_colour(0.13)}</visual>'
-            f'<collision><origin xyz="0 0 {self.sensor_height!r}"/><geometry>'
-            f'<cylinder radius="{r!r}" length="{length!r}"/></geometry></collision>'
-        )
-        middle = (-0.15 * r, 0.0, self.sensor_height - 0.01)
-        parts = [
-            f'<robot name="{self.name}">',
-            _link("chassis", body, self.mass, middle, (across, across, self.mass * r * r / 2)),
-        ]
-        w, m = self.wheel_radius, self.wheel_mass
-        inertia = (0.4 * m * w * w, 0.5 * m * w * w, 0.4 * m * w * w)
-        for side, y in (("left", self.track / 2), ("right", -self.track / 2)):
-            parts.append(_link(f"{side}_wheel", _ball(w), m, (0.0, 0.0, 0.0), inertia, 1.5))
-            joint = '<axis xyz="0 1 0"/>'
-            parts.append(_joint(f"{side}_axle", "continuous", f"{side}_wheel", (0.0, y, w), joint))
-        c = _GROUND_CLEARANCE
-        parts.append(_link("caster", _ball(c), 0.05, (0.0, 0.0, 0.0), (2e-5, 2e-5, 2e-5), 0.0))
-        parts.append(_joint("caster_mount", "fixed", "caster", (-0.7 * r, 0.0, c)))
-        return "\n".join([*parts, "</robot>"])
+        """Return a URDF of these numbers."""
+        return made_urdf(self)
 
 
-def _xyz(point: tuple[float, float, float]) -> str:
-    return " ".join(map(repr, point))
-
-
-def _colour(grey: float) -> str:
-    return f'<material name="grey{grey}"><color rgba="{grey} {grey} {grey} 1"/></material>'
-
-
-def _ball(radius: float) -> str:
-    geometry = f'<geometry><sphere radius="{radius!r}"/></geometry>'
-    return f"<visual>{geometry}{_colour(0.13)}</visual><collision>{geometry}</collision>"
-
-
-def _link(
-    name: str,
-    body: str,
-    mass: float,
-    middle: tuple[float, float, float],
-    inertia: tuple[float, float, float],
-    friction: float | None = None,
-) -> str:
-    ixx, iyy, izz = inertia
-    contact = (
-        ""
-        if friction is None
-        else f'<contact><lateral_friction value="{friction}"/><rolling_friction value="0"/>'
-        '<spinning_friction value="0"/></contact>'
-    )
-    return (
-        f'<link name="{name}">{contact}<inertial><origin xyz="{_xyz(middle)}"/>'
-        f'<mass value="{mass!r}"/><inertia ixx="{ixx!r}" iyy="{iyy!r}" izz="{izz!r}" '
-        f'ixy="0" ixz="0" iyz="0"/></inertial>\n{body}</link>'
-    )
-
-
-def _joint(name: str, kind: str, child: str, at: tuple[float, float, float], more: str = "") -> str:
-    return (
-        f'<joint name="{name}" type="{kind}"><parent link="chassis"/><child link="{child}"/>'
-        f'<origin xyz="{_xyz(at)}"/>{more}</joint>'
-    )
+def rectangle(length: float, width: float, ahead: float = 0.0) -> tuple[tuple[float, float], ...]:
+    """Return the corners of a rectangle whose middle lies ``ahead`` of the axle (m)."""
+    front, rear, side = ahead + length / 2, ahead - length / 2, width / 2
+    return ((front, side), (rear, side), (rear, -side), (front, -side))
 
 
 _robots: dict[str, RobotModel] = {}
@@ -175,10 +159,16 @@ def register_robot(robot: RobotModel) -> RobotModel:
     """
     if robot.name in _robots:
         raise ValueError(f"a robot named {robot.name!r} is registered already")
-    if robot.track / 2 > robot.radius or 2 * robot.wheel_radius > robot.height:
+    if not wheels_fit(robot):
         raise ValueError(f"the wheels of {robot.name!r} do not fit under its body")
     _robots[robot.name] = robot
     return robot
+
+
+def wheels_fit(robot: RobotModel) -> bool:
+    """Tell whether the wheels of a robot that is made from numbers lie under its body."""
+    half = robot.radius if robot.size is None else robot.size[1] / 2
+    return robot.track / 2 <= half and 2 * robot.wheel_radius <= robot.height
 
 
 def robot_names() -> tuple[str, ...]:
