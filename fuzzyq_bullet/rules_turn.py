@@ -54,7 +54,7 @@ def share_turned(trajectory: Trajectory) -> float | None:
         0 to 1; None for a planner without rules, and where nothing ever came near.
     """
     turns = controller_turns(trajectory)
-    seen = trajectory.scenario.robot.spec.sensor_range
+    seen = trajectory.scenario.sensor_range
     near = trajectory.ticks.clearance[trajectory.decisions.tick] < seen
     if not near.any() or not np.isfinite(turns).any():
         return None

@@ -161,7 +161,7 @@ class Observation:
         turn_rate: Turn rate (rad/s), positive to the left.
         goal: Centre of the goal (m), world frame, shape (2,).
         goal_radius: Radius of the goal (m).
-        range: Longest distance the sensor tells (m): 5·S_p in the paper.
+        range: Longest distance the sensor tells (m): 5·S_p in the paper, more if a scenario says so.
         radius: Half the width of a detection line (m): the robot's radius and a margin.
         sensor: What else can be sensed at this instant.
         motion: Limits of a body that must turn and brake, or None for the paper's point robot,

@@ -78,7 +78,7 @@ class Escape:
         goal = towards_goal(observation)
         here, to_goal = observation.position, goal.distance
         [middle] = observation.sense([goal.bearing])
-        enough = min(breakout_at * observation.unit, to_goal)
+        enough = min(breakout_at * observation.unit, observation.range, to_goal)
         if to_goal < self._nearest - NEARER:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._graph.pass_by(here)

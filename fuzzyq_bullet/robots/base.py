@@ -108,7 +108,7 @@ class RobotModel(Model):
 
     @property
     def sensor_range(self) -> float:
-        """Longest distance that a detection line tells (m): 5·S_p."""
+        """Longest distance that a detection line tells (m) unless the sensor says more: 5·S_p."""
         return RANGE_UNITS * self.radius
 
     @property

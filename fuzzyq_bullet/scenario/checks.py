@@ -13,6 +13,7 @@ import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE
 from fuzzyq_bullet.problems import MAX_SHOWN, Loc, key_path
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.scenario.layouts.placing import separated
@@ -30,11 +31,13 @@ def find_conflicts(scenario: Scenario) -> list[Conflict]:
     Conflicts are: start or goal outside the arena; the robot's disc at the start, or at the centre
     of the goal, touching a wall or an obstacle; a start within the goal (a run of no steps, with
     no shortest path to measure it by); an obstacle wholly outside the walls; obstacles to be drawn
-    that are too large for the arena or too many; an obstacle that moves. Obstacles may overlap each
+    that are too large for the arena or too many; an obstacle that moves; a sensor that sees less far than one
+    step of the controller is long. Obstacles may overlap each
     other and poke through walls.
     """
     return [
         *_places(scenario),
+        *_range(scenario),
         *_obstacles(scenario),
         *_motions(scenario),
         *_random(scenario),
@@ -101,6 +104,20 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
                     f"is wholly outside the walls of {_named(scenario.arena)}",
                 )
     return [by_index[i] for i in sorted(by_index)]
+
+
+def _range(scenario: Scenario) -> list[Conflict]:
+    """Return a range within which the longest step of the controller may not end."""
+    least = LONGEST_STRIDE * scenario.robot.radius
+    if scenario.sensor_range >= least:
+        return []
+    return [
+        (
+            ("sensor", "range"),
+            f"must be at least {least:g} m, the longest step of a robot of radius "
+            f"{scenario.robot.radius:g} m, got {scenario.sensor_range:g}",
+        )
+    ]
 
 
 def _motions(scenario: Scenario) -> list[Conflict]:

@@ -106,9 +106,13 @@ def _choose_sensor(
 ) -> SensorModel:
     name = value.get("model") if isinstance(value, Mapping) else None
     if info.context == ANY_NAME and isinstance(name, str) and name not in SENSORS.names():
-        return SensorModel(model=name[:_LONGEST_NAME])
+        return SensorModel.model_validate({"model": name[:_LONGEST_NAME], **_range_of(value)})
     sensor: SensorModel = choose(value)
     return sensor
+
+
+def _range_of(sensor: Mapping[Any, Any]) -> dict[str, Any]:
+    return {key: value for key, value in sensor.items() if key == "range"}
 
 
 class Scenario(Model):
@@ -174,6 +178,11 @@ class Scenario(Model):
                 "random": None if self.random is None else self.random.moved(x, y),
             }
         )
+
+    @property
+    def sensor_range(self) -> float:
+        """Longest distance that a detection line tells (m): 5·S_p unless ``sensor`` says more."""
+        return self.sensor.range_on(self.robot.spec)
 
     def start_heading(self) -> float:
         """Return the heading at the start (rad); towards the goal when none is given."""

@@ -6,13 +6,17 @@ from typing import Annotated, Literal, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from fuzzyq_bullet.errors import SensorError
-from fuzzyq_bullet.quantities import ModelRegistry
+from fuzzyq_bullet.quantities import ModelRegistry, Number
+from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.wording import error_in_words
 
 Floats: TypeAlias = NDArray[np.float64]
+
+MOST_RANGE = 10.0
+"""Longest range that a scenario may ask for (m)."""
 
 
 class SensorModel(BaseModel):
@@ -20,12 +24,25 @@ class SensorModel(BaseModel):
 
     A sensor of your own is a subclass with a name and a method ``measure``, made known by
     ``register_sensor``. Its other fields are keys of ``sensor`` in the scenario file. Every ray
-    goes through ``measure``: those of the detection lines, and single rays.
+    goes through ``measure``: those of the detection lines, and single rays. Every sensor has a
+    range, without doing anything for it: its rays are cast no farther.
+
+    Attributes:
+        model: Which sensor it is.
+        range: Longest distance that a detection line tells (m); None for 5·S_p.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     model: str
+    range: Annotated[Number, Field(gt=0.0, le=MOST_RANGE)] | None = Field(
+        default=None,
+        description="How far the robot sees (m); by default five of its radii, the paper's 5·S_p.",
+    )
+
+    def range_on(self, robot: RobotModel) -> float:
+        """Return the longest distance (m) that a detection line of this robot tells."""
+        return robot.sensor_range if self.range is None else self.range
 
     def measure(self, lengths: Floats, rng: np.random.Generator) -> Floats:
         """Return what the sensor tells of rays.

@@ -72,13 +72,13 @@ class CorridorSensor:
     Args:
         model: What is told of the rays' lengths.
         cast: Casts rays.
-        robot: The robot, whose radius, sensor height and range they have.
+        robot: The robot, whose radius and sensor height they have, and range if the model has none.
         rng: Random numbers of the model.
         spacing: How far apart rays of a line may be (m): the width of the thinnest obstacle.
 
     Attributes:
         radius: Half the width of a detection line (m).
-        range: Longest distance that a detection line tells (m): 5·S_p.
+        range: Longest distance that a detection line tells (m): 5·S_p, unless the model has its own.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class CorridorSensor:
         self._height = robot.sensor_height
         self._rng = rng
         self.radius = wide = robot.radius + SENSOR_MARGIN
-        self.range = robot.sensor_range
+        self.range = model.range_on(robot)
         aside = wide * offsets(wide, spacing)
         rims = np.sqrt(wide**2 - aside**2)
         self._rims = np.repeat(rims, 2)

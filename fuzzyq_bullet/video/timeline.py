@@ -159,7 +159,7 @@ def _marked(trajectory: Trajectory, point: list[float]) -> tuple[float, float] |
 def sensor_range(trajectory: Trajectory) -> float:
     """Return the longest detection line (m) of a run: what they measure where nothing is near."""
     lengths = trajectory.decisions.lengths
-    longest = trajectory.scenario.robot.spec.sensor_range
+    longest = trajectory.scenario.sensor_range
     known = lengths[np.isfinite(lengths)]
     return float(known.max()) if known.size and known.max() > 0.0 else longest
 
