@@ -45,6 +45,9 @@ class Motion:
         period: Time between two decisions (s).
         radius: Radius of the robot's disc (m).
         margin: How much wider than the disc a detection line is, on either side (m).
+        latency: Time from a decision to the wheels (s).
+        uncertainty: How much less may be free than the sensor tells (m): its noise, and whatever
+            else the scenario disturbs.
     """
 
     max_speed: float
@@ -54,6 +57,8 @@ class Motion:
     period: float
     radius: float
     margin: float
+    latency: float = 0.0
+    uncertainty: float = 0.0
 
     def way_to_stop(self, speed: float) -> float:
         """Return the way (m) from full braking at ``speed`` (m/s) to a stop."""

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from fuzzyq_bullet.quantities import Model
+from fuzzyq_bullet.quantities import Model, Number
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel, robot_model, robot_names
 from fuzzyq_bullet.robots.base import Acceleration, MaxSpeed, MaxTurnRate, TurnAcceleration
 
@@ -38,6 +38,13 @@ class Robot(Model):
     )
     turn_acceleration: TurnAcceleration = Field(
         default=FUZZYQ.turn_acceleration, description="Greatest change of the turn rate (rad/s²)."
+    )
+
+    slip: Annotated[Number, Field(ge=0.0, le=0.3)] = Field(
+        default=0.0, description="Standard deviation of a wheel's speed, as a part of it."
+    )
+    latency: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
+        default=0.0, description="Time from a decision to the wheels (s)."
     )
 
     @model_validator(mode="before")
