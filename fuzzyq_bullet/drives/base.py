@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
+from fuzzyq_bullet.drives.disturbances import Localiser, stream
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Motion, Observation
@@ -15,6 +16,7 @@ from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.passing import Passing
 from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.sensors import CorridorSensor
+from fuzzyq_bullet.sensors.noise import RayNoise
 from fuzzyq_bullet.shapes import thinnest
 from fuzzyq_bullet.trajectory import Collision
 
@@ -37,10 +39,20 @@ class Driver(ABC):
 
     def __init__(self, world: SensorWorld, scenario: Scenario, motion: Motion | None) -> None:
         # The seed's third stream: the first places the obstacles, the second is the planner's.
-        rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(2,)))
+        seed, told = scenario.seed, scenario.sensor
+        rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(2,)))
+        noise = RayNoise(told, stream(seed, "noise"), stream(seed, "dropout"))
         self._sensor = CorridorSensor(
-            scenario.sensor, world.cast, scenario.robot.spec, rng, thinnest(scenario.obstacles)
+            told,
+            world.cast,
+            scenario.robot.spec,
+            rng,
+            thinnest(scenario.obstacles),
+            noise if told.is_disturbed else None,
         )
+        self._localiser = Localiser(told.pose_noise, told.heading_noise, stream(seed, "pose"))
+        self._reading_lasts = 0.0 if told.rate is None else 1.0 / told.rate
+        self._read_at, self._read_from = -math.inf, (0.0, 0.0)
         self._field, self._radius = world.field, scenario.robot.radius
         self._goal = scenario.goal
         self._targets = scenario.targets
@@ -56,18 +68,21 @@ class Driver(ABC):
         """Return what the planner may know at the latest tick."""
         now = self.ticks[-1]
         target = self._targets[self.passed]
+        error = self._localiser.error(now.time)
+        if now.time >= self._read_at + self._reading_lasts - 1e-9:
+            self._read_at, self._read_from = now.time, (now.x, now.y)
         still = self._motion is None  # what has no inertia has no speed that matters
         return Observation(
             time=now.time,
-            position=(now.x, now.y),
-            heading=now.heading,
+            position=(now.x + error.x, now.y + error.y),
+            heading=now.heading + error.heading,
             speed=0.0 if still else now.speed,
             turn_rate=0.0 if still else now.turn_rate,
             goal=target.position,
             goal_radius=target.radius,
             range=self._sensor.range,
             radius=self._sensor.radius,
-            sensor=self._sensor.at((now.x, now.y)),
+            sensor=self._sensor.at(self._read_from, error.heading),
             motion=self._motion,
             unit=self._radius,
         )

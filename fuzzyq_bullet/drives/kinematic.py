@@ -31,17 +31,15 @@ class KinematicDriver(Driver):
 
     def advance(self, decision: Decision) -> None:
         """Move by one step (Eq. 17); stop at the first thing the disc would touch."""
-        now = self.ticks[-1]
-        step = decision.step
-        [free] = self._field.free_distance(
-            (now.x, now.y), decision.heading, self._radius, step
-        ).tolist()
+        now, step = self.ticks[-1], decision.step
+        heading = decision.heading - self._localiser.error(now.time).heading
+        [free] = self._field.free_distance((now.x, now.y), heading, self._radius, step).tolist()
         hit = free < step
         moved = min(step, free)
-        x = now.x + moved * math.cos(decision.heading)
-        y = now.y + moved * math.sin(decision.heading)
+        x = now.x + moved * math.cos(heading)
+        y = now.y + moved * math.sin(heading)
         self.steps += 1
-        self._record(x, y, decision.heading, moved / STEP_TIME)
+        self._record(x, y, heading, moved / STEP_TIME)
         if hit:
             index, touched = self._field.touching((x, y))
             self.collision = Collision(

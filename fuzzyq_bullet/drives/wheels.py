@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
+
 from fuzzyq_bullet.drives.base import Driver
+from fuzzyq_bullet.drives.disturbances import SURE, Delay, stream
 from fuzzyq_bullet.drives.velocity_controller import (
     STILL,
     Twist,
@@ -58,6 +61,7 @@ class WheelsDriver(Driver):
         self._decision_ticks = steps // self._tick_steps
         tick_time = self._tick_steps * TIME_STEP
         limits = scenario.robot
+        delay = math.ceil(limits.latency / tick_time - 1e-9)
         motion = Motion(
             max_speed=limits.max_speed,
             max_turn_rate=limits.max_turn_rate,
@@ -68,18 +72,28 @@ class WheelsDriver(Driver):
             margin=SENSOR_MARGIN,
             wheel_radius=limits.spec.wheel_radius,
             track=limits.spec.track,
+            latency=delay * tick_time,
+            uncertainty=_uncertainty(scenario),
         )
         super().__init__(world, scenario, motion)
         self._world = world
         self._limits = limits
-        self._controller = VelocityController(limits, tick_time)
+        self._latency = motion.latency
+        self._controller = VelocityController(limits, tick_time + self._latency)
         self._twist = STILL
+        self._delay = Delay(delay, STILL)
+        self._slips = stream(scenario.seed, "slip")
+        self._grip = np.ones(2)
         world.robot.place(*scenario.start.position, scenario.start_heading())
         self._record()
 
     def advance(self, decision: Decision) -> None:
         """Follow the decision for one decision period."""
-        self._aim(lambda heading, travelled: self._controller.twist(decision, heading, travelled))
+
+        def twist(heading: float, travelled: float) -> Twist:
+            return self._controller.twist(decision, heading, travelled)
+
+        self._aim(twist)
 
     def steer(self, twist: Twist) -> None:
         """Hold a twist for one decision period; in the goal the robot stops by itself.
@@ -105,8 +119,14 @@ class WheelsDriver(Driver):
         for _ in range(self._decision_ticks):
             before = self.ticks[-1]
             in_goal = self._in_goal(before)
-            wanted = self._in_the_end(before) if in_goal else twist_at(before.heading, travelled)
-            contact = self._drive(wanted)
+            believed = before.heading + self._localiser.error(before.time).heading
+            turning, ahead = before.turn_rate * self._latency, before.speed * self._latency
+            wanted = (
+                self._in_the_end(before)
+                if in_goal
+                else twist_at(believed + turning, travelled + ahead)
+            )
+            contact = self._drive(self._delay.pass_on(wanted))
             self._record()
             now = self.ticks[-1]
             self._passing.move((now.x, now.y))
@@ -137,18 +157,26 @@ class WheelsDriver(Driver):
     def _drive(self, wanted: Twist) -> Contact | None:
         """Drive for one tick; return at once on contact."""
         world, limits, now, left = self._world, self._limits, self._twist, self._tick_steps
+        if limits.slip > 0.0:
+            self._grip = self._slips.normal(1.0, limits.slip, 2)
+            self._command(now)
         while left:
             stride = left
             if now != wanted:
                 stride = min(COMMAND_STEPS, left)
                 self._twist = now = limit_acceleration(now, wanted, limits, stride * TIME_STEP)
-                world.robot.command(*world.model.wheel_commands(*now))
+                self._command(now)
             taken, contact = world.advance(stride)
             self.steps += taken
             if contact is not None:
                 return contact
             left -= stride
         return None
+
+    def _command(self, twist: Twist) -> None:
+        """Let the wheels turn for a twist, each as well as it grips."""
+        left, right = self._world.model.wheel_commands(*twist)
+        self._world.robot.command(left * self._grip[0], right * self._grip[1])
 
     def _collision(self, contact: Contact) -> Collision:
         x, y, _ = contact.point
@@ -162,6 +190,19 @@ class WheelsDriver(Driver):
 
     def _record(self) -> None:
         self.ticks.append(self._world.robot.state(self.steps * TIME_STEP))
+
+
+def _uncertainty(scenario: Scenario) -> float:
+    """Return how much less may be free ahead than is told (m), by what the scenario disturbs.
+
+    Readings are too long by ``SURE`` standard deviations at most, or as old as the time between
+    two; a lost reading is noticed one decision later; slipping wheels brake later.
+    """
+    sensor, robot = scenario.sensor, scenario.robot
+    late = 0.0 if sensor.rate is None else 1.0 / sensor.rate
+    lost = 1.0 / DECISIONS_A_SECOND if sensor.dropout > 0.0 else 0.0
+    braking = robot.max_speed**2 / (2.0 * robot.acceleration)
+    return SURE * (sensor.noise + robot.slip * braking) + robot.max_speed * (late + lost)
 
 
 def _at_rest(state: RobotState) -> bool:

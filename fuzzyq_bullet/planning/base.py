@@ -50,6 +50,9 @@ class Motion:
         margin: How much wider than the disc a detection line is, on either side (m).
         wheel_radius: Radius of the two wheels (m).
         track: Distance between them (m).
+        latency: Time from a decision to the wheels (s).
+        uncertainty: How much less may be free than the sensor tells (m): its noise, and whatever
+            else the scenario disturbs.
     """
 
     max_speed: float
@@ -61,6 +64,8 @@ class Motion:
     margin: float
     wheel_radius: float = 0.05
     track: float = 0.28
+    latency: float = 0.0
+    uncertainty: float = 0.0
 
     def way_to_stop(self, speed: float) -> float:
         """Return the way (m) from full braking at ``speed`` (m/s) to a stop."""

@@ -41,8 +41,10 @@ def _filtered_on_wheels(decision: Decision, observation: Observation, motion: Mo
     """
     facing = observation.heading
     turn = wrap_angle(decision.heading - facing)
-    # How far the robot still turns while it reverses its turn rate.
+    # How far the robot still turns until it hears of it, and while it reverses its turn rate.
     coast = observation.turn_rate * abs(observation.turn_rate) / (2.0 * motion.turn_acceleration)
+    coast += observation.turn_rate * motion.latency
+    reserve = RESERVE + motion.uncertainty
     start = max(0.0, min(coast, turn)) if turn >= 0.0 else min(0.0, max(coast, turn))
     spacing = _spacing(motion, observation.speed)
     if start == coast and NARROW < abs(turn) <= spacing:
@@ -56,15 +58,17 @@ def _filtered_on_wheels(decision: Decision, observation: Observation, motion: Mo
     headings = [decision.heading if one == turn else facing + one for one in (*passed, *wanted)]
     free = _free(decision, observation, headings)
 
-    reach = min(free[: len(passed)]) - RESERVE
-    heading, ahead = facing + start if wanted else decision.heading, reach + RESERVE
-    need = observation.speed * motion.period + motion.way_to_stop(observation.speed)
+    reach = min(free[: len(passed)]) - reserve
+    heading, ahead = facing + start if wanted else decision.heading, reach + reserve
+    fastest = min(motion.max_speed, observation.speed + motion.acceleration * motion.latency)
+    speed = fastest if motion.latency > 0.0 else observation.speed
+    need = speed * (motion.period + motion.latency) + motion.way_to_stop(speed)
     later = slice(len(passed), None)
     for further, length in zip(headings[later], free[later], strict=True):
-        if RESERVE < need > length - RESERVE:
+        if reserve < need > length - reserve:
             reach = 0.0
             break
-        reach = min(reach, length - RESERVE)
+        reach = min(reach, length - reserve)
         heading, ahead = further, length
     return decision._replace(
         heading=heading,

@@ -20,8 +20,8 @@ _MOST_STEPS = 100_000
 def twist_filter(twist: TwistCommand, observation: Observation) -> tuple[TwistCommand, float]:
     """Return the twist with its speed limited to what is free.
 
-    The robot comes to the twist within its acceleration, holds it for a period, and then brakes to
-    a stop. Every point that its centre passes must be sensed to be free. If it is not with any
+    The robot goes on for as long as a command takes to its wheels, comes to the twist within its
+    acceleration, holds it for a period, and then brakes to a stop. Every point that its centre passes must be sensed to be free. If it is not with any
     speed, the robot brakes: that way was free when it was last asked, so there always is one.
 
     Args:
@@ -38,7 +38,8 @@ def twist_filter(twist: TwistCommand, observation: Observation) -> tuple[TwistCo
     shortest = 0.0
     for part in range(PARTS, -1, -1):
         tried = twist._replace(speed=speed * part / PARTS, turn_rate=rate)
-        free, shortest = _free(_arc(tried, observation, motion), observation)
+        arc = _arc(tried, observation, motion)
+        free, shortest = _free(arc, observation, RESERVE + motion.uncertainty)
         if free:
             return tried, shortest
     return twist._replace(speed=0.0, turn_rate=0.0), shortest
@@ -52,10 +53,13 @@ def _arc(
     x, y, facing = 0.0, 0.0, observation.heading
     speed, rate = observation.speed, observation.turn_rate
     points: list[tuple[float, float]] = []
+    heard = math.ceil(motion.latency / dt)
     for step in range(_MOST_STEPS):
-        braking = step >= _STEPS_A_PERIOD
-        speed = _towards(speed, 0.0 if braking else twist.speed, motion.acceleration * dt)
-        rate = _towards(rate, 0.0 if braking else twist.turn_rate, motion.turn_acceleration * dt)
+        braking = step >= heard + _STEPS_A_PERIOD
+        if step >= heard:
+            wanted, turning = (0.0, 0.0) if braking else (twist.speed, twist.turn_rate)
+            speed = _towards(speed, wanted, motion.acceleration * dt)
+            rate = _towards(rate, turning, motion.turn_acceleration * dt)
         facing += rate * dt
         x, y = x + speed * math.cos(facing) * dt, y + speed * math.sin(facing) * dt
         if not points or math.dist(points[-1], (x, y)) >= _APART:
@@ -65,7 +69,9 @@ def _arc(
     return [*points, (x, y)]
 
 
-def _free(points: list[tuple[float, float]], observation: Observation) -> tuple[bool, float]:
+def _free(
+    points: list[tuple[float, float]], observation: Observation, reserve: float
+) -> tuple[bool, float]:
     """Return whether all points are free, and the shortest of the lengths that say so (m)."""
     needs: dict[float, float] = {}
     for x, y in points:
@@ -79,7 +85,7 @@ def _free(points: list[tuple[float, float]], observation: Observation) -> tuple[
     if not needs:
         return True, observation.range
     lengths = observation.sense(list(needs))
-    fits = all(far <= free - RESERVE for far, free in zip(needs.values(), lengths, strict=True))
+    fits = all(far <= free - reserve for far, free in zip(needs.values(), lengths, strict=True))
     return fits, min(lengths)
 
 

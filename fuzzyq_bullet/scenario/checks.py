@@ -42,6 +42,7 @@ def find_conflicts(scenario: Scenario) -> list[Conflict]:
         *_obstacles(scenario),
         *_motions(scenario),
         *_random(scenario),
+        *_noise(scenario),
     ]
 
 
@@ -170,6 +171,20 @@ def _in_words(arena: Arena) -> str:
     width, depth = arena.size
     where = f" from ({arena.origin[0]:g}, {arena.origin[1]:g})" if any(arena.origin) else ""
     return f"the arena, {width:g} × {depth:g} m{where}"
+
+
+def _noise(scenario: Scenario) -> list[Conflict]:
+    """Return what of the sensor's noise leaves nothing to be seen."""
+    sensor, far = scenario.sensor, scenario.sensor_range
+    return [
+        (("sensor", key), f"must be less than the range of the sensor, {far:g} m; got {value:g}")
+        for key, value in (
+            ("noise", sensor.noise),
+            ("quantisation", sensor.quantisation),
+            ("blind", sensor.blind),
+        )
+        if value >= far
+    ]
 
 
 def _is_outside(item: Obstacle, bounds: Bounds) -> bool:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Annotated, Any, NoReturn
 
 from pydantic import Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.quantities import Model
+from fuzzyq_bullet.quantities import Model, Number
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel, robot_model, robot_names
 from fuzzyq_bullet.robots.base import (
     Acceleration,
@@ -65,6 +65,13 @@ class Robot(Model):
     )
     turn_acceleration: TurnAcceleration = Field(
         default=FUZZYQ.turn_acceleration, description="Greatest change of the turn rate (rad/s²)."
+    )
+
+    slip: Annotated[Number, Field(ge=0.0, le=0.3)] = Field(
+        default=0.0, description="Standard deviation of a wheel's speed, as a part of it."
+    )
+    latency: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
+        default=0.0, description="Time from a decision to the wheels (s)."
     )
 
     @model_validator(mode="before")

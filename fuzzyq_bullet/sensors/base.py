@@ -30,6 +30,13 @@ class SensorModel(BaseModel):
     Attributes:
         model: Which sensor it is.
         range: Longest distance that a detection line tells (m); None for 5·S_p.
+        noise: Standard deviation of a length (m); like the rest it comes on top of ``measure``.
+        quantisation: Lengths are told in steps of this (m), rounded down; 0 for exactly.
+        dropout: Share of the rays that meet something and tell nothing.
+        blind: What is nearer than this to the robot's centre (m) is not seen.
+        rate: Readings a second; None for a new one for every decision.
+        pose_noise: Standard deviation of x, and of y, of the pose that the planner is told (m).
+        heading_noise: Standard deviation of its heading (rad).
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -39,6 +46,33 @@ class SensorModel(BaseModel):
         default=None,
         description="How far the robot sees (m); by default five of its radii, the paper's 5·S_p.",
     )
+    noise: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
+        default=0.0, description="Standard deviation of a ray's length (m)."
+    )
+    quantisation: Annotated[Number, Field(ge=0.0, le=0.5)] = Field(
+        default=0.0, description="Lengths are told in steps of this (m), rounded down."
+    )
+    dropout: Annotated[Number, Field(ge=0.0, le=0.5)] = Field(
+        default=0.0, description="Share of the rays that tell nothing although they meet something."
+    )
+    blind: Annotated[Number, Field(ge=0.0, le=2.0)] = Field(
+        default=0.0, description="What is nearer to the robot's centre (m) is not seen."
+    )
+    rate: Annotated[Number, Field(ge=1.0, le=240.0)] | None = Field(
+        default=None, description="Readings a second; by default one for every decision."
+    )
+    pose_noise: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
+        default=0.0,
+        description="Standard deviation of x and y of the pose that is told (m); it drifts.",
+    )
+    heading_noise: Annotated[Number, Field(ge=0.0, le=0.5)] = Field(
+        default=0.0, description="Standard deviation of the heading that is told (rad); it drifts."
+    )
+
+    @property
+    def is_disturbed(self) -> bool:
+        """Whether lengths are told otherwise than ``measure`` does."""
+        return any((self.noise, self.quantisation, self.dropout, self.blind))
 
     def range_on(self, robot: RobotModel) -> float:
         """Return the longest distance (m) that a detection line of this robot tells."""

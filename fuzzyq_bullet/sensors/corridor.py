@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.planning.base import RangeSensor
 from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.sensors.base import SensorModel
+from fuzzyq_bullet.sensors.noise import RayNoise
 from fuzzyq_bullet.shapes.outlines import FINEST
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -76,6 +76,7 @@ class CorridorSensor:
         robot: The robot, whose radius and sensor height they have, and range if the model has none.
         rng: Random numbers of the model.
         spacing: How far apart rays of a line may be (m): the width of the thinnest obstacle.
+        noise: What disturbs the lengths, if anything does.
 
     Attributes:
         radius: Half the width of a detection line (m).
@@ -89,11 +90,13 @@ class CorridorSensor:
         robot: RobotModel,
         rng: np.random.Generator,
         spacing: float = WIDEST,
+        noise: RayNoise | None = None,
     ) -> None:
         self._model = model
         self._cast = cast
         self._height = robot.sensor_height
         self._rng = rng
+        self._noise = noise
         self.radius = wide = robot.radius + SENSOR_MARGIN
         self.range = model.range_on(robot)
         aside = wide * offsets(wide, spacing)
@@ -104,15 +107,29 @@ class CorridorSensor:
         # how far ahead it ends.
         both = np.outer(aside, [1.0, -1.0]).ravel().tolist()
         ahead = self._lengths[:-2].tolist()
+        self._aside = np.abs([*both, robot.radius, robot.radius])
         self._rays = [
             *zip(both, both, ahead, strict=True),
             (robot.radius, wide, 0.0),
             (-robot.radius, -wide, 0.0),
         ]
 
-    def at(self, origin: Point) -> RangeSensor:
-        """Return what can be asked when the robot's centre is at a point (m)."""
-        return RangeSensor(partial(self.sense, origin), partial(self.look, origin))
+    def at(self, origin: Point, misled: float = 0.0) -> RangeSensor:
+        """Return what can be asked when the robot's centre is at a point (m).
+
+        Args:
+            origin: The point.
+            misled: How far to the left of the truth the robot believes to face (rad): so far to the
+                right of what it asks for go the rays.
+        """
+
+        def true(headings: Sequence[float]) -> Sequence[float]:
+            return [one - misled for one in headings] if misled else headings
+
+        return RangeSensor(
+            lambda headings: self.sense(origin, true(headings)),
+            lambda headings: self.look(origin, true(headings)),
+        )
 
     def sense(self, origin: Point, headings: Sequence[float]) -> list[float]:
         """Return how far the robot's disc could move from ``origin`` along each heading.
@@ -135,8 +152,11 @@ class CorridorSensor:
             for start, end, ahead in self._rays:
                 starts.append((x + start * sin, y - start * cos, z))
                 ends.append((x + (ahead * cos + end * sin), y + (ahead * sin - end * cos), z))
-        lengths = self._told(starts, ends, np.concatenate([self._lengths] * len(headings)))
-        lengths = lengths.reshape(len(headings), -1)
+        count = len(headings)
+        lengths = self._told(
+            starts, ends, np.tile(self._lengths, count), np.tile(self._aside, count)
+        )
+        lengths = lengths.reshape(count, -1)
         rays, probes = lengths[:, :-2], lengths[:, -2:]
         rays[:, -2:][probes < np.inf] = np.inf
         # A free line is exactly as long as the range, not rounded.
@@ -159,15 +179,19 @@ class CorridorSensor:
         reach = self.range + self.radius
         (x, y), z = origin, self._height
         ends = [(x + reach * math.cos(one), y + reach * math.sin(one), z) for one in headings]
-        lengths = self._told([(x, y, z)] * len(ends), ends, np.full(len(ends), reach))
+        count = len(ends)
+        lengths = self._told([(x, y, z)] * count, ends, np.full(count, reach), np.zeros(count))
         return np.minimum(lengths, reach)
 
-    def _told(self, starts: Sequence[Point3], ends: Sequence[Point3], lengths: Floats) -> Floats:
+    def _told(
+        self, starts: Sequence[Point3], ends: Sequence[Point3], lengths: Floats, aside: Floats
+    ) -> Floats:
         """Return the measured length (m) of each ray, infinite where nothing is met.
 
-        Every ray of the robot passes here.
+        Every ray of the robot passes here. ``aside`` is how far from its centre they begin (m).
         """
         free = np.array(self._cast(starts, ends))
         lengths = free * lengths
         lengths[free >= 1.0] = np.inf
-        return self._model.measured(lengths, self._rng)
+        told = self._model.measured(lengths, self._rng)
+        return told if self._noise is None else self._noise.disturbed(told, aside)
