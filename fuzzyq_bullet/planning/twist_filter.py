@@ -20,9 +20,10 @@ _MOST_STEPS = 100_000
 def twist_filter(twist: TwistCommand, observation: Observation) -> tuple[TwistCommand, float]:
     """Return the twist with its speed limited to what is free.
 
-    The robot goes on for as long as a command takes to its wheels, comes to the twist within its
-    acceleration, holds it for a period, and then brakes to a stop. Every point that its centre passes must be sensed to be free. If it is not with any
-    speed, the robot brakes: that way was free when it was last asked, so there always is one.
+    The robot goes on until the command reaches its wheels, comes to the twist within its
+    acceleration, holds it for a period, and then brakes to a stop. Every point that its centre
+    passes must be sensed to be free. If it is not with any speed, the robot brakes: that way was
+    free when it was last asked, so there always is one.
 
     Args:
         twist: What the planner asks for.
