@@ -66,7 +66,10 @@ def import_map(
     *,
     out: Annotated[
         Path | None,
-        typer.Option(help="Scenario file to write; by default FILE as .yaml, here.", **FILE),
+        typer.Option(
+            help="Scenario file to write; by default FILE as .yaml (of YAML: .scenario.yaml).",
+            **FILE,
+        ),
     ] = None,
     resolution: Annotated[
         float | None, typer.Option(metavar="M", help="Size of a pixel or cell (m).")
@@ -110,6 +113,8 @@ def import_map(
     from fuzzyq_bullet.scenario.importers import ImportOptions, import_map, options_of
 
     target = out or Path(f"{file.stem}.yaml")
+    if out is None and target.resolve() == file.resolve():  # a map that is YAML, and lies here
+        target = target.with_suffix(".scenario.yaml")
     writable_files(target.parent, [target.name])
     refuse_inputs([target], [file, *plugin_inputs(plugin or [])])
     if target.exists() and not replace:
@@ -127,7 +132,7 @@ def import_map(
     notes = [f"left out: {printable(line)}" for line in imported.left_out]
     head = [f"Imported from {printable(file.name)}.", *notes]
     lines = "".join(f"# {line}\n" for line in head) if notes else ""
-    write_text(target, lines + dump_scenario(imported.scenario))
+    write_text(target, lines + dump_scenario(imported.scenario, defaults=False))
     for note in notes:
         say(note)
     typer.echo(target)

@@ -31,7 +31,7 @@ from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import MAX_WORDED, problems_of
-from fuzzyq_bullet.scenario.robot import with_robot_in
+from fuzzyq_bullet.scenario.robot import Robot, with_robot_in
 from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
 from fuzzyq_bullet.yaml_tree import Node, read_tree
 
@@ -237,13 +237,21 @@ def bundled_scenarios() -> dict[str, str]:
     return {path.stem: load_scenario(path).description for path in paths}
 
 
-def dump_scenario(scenario: Scenario) -> str:
+def dump_scenario(scenario: Scenario, *, defaults: bool = True) -> str:
     """Return a scenario as YAML text that ``parse_scenario`` reads back as its equal.
 
-    Every value is written, defaults too, so that the file means the same in a version whose
-    defaults differ.
+    Args:
+        scenario: The scenario.
+        defaults: Whether every value is written, defaults too, so that the file means the same in a
+            version whose defaults differ. Without them it is a file for people to read and change.
     """
-    data = scenario.model_dump(mode="json")
+    data = scenario.model_dump(mode="json", exclude_defaults=not defaults)
+    if not defaults and "robot" in data:
+        told = scenario.robot
+        joints = {key: data["robot"].get(key) for key in ("left_wheel", "right_wheel")}
+        usual = Robot.model_validate({"model": told.model, **joints}).model_dump(mode="json")
+        changed = {key: v for key, v in data["robot"].items() if v != usual[key] or joints.get(key)}
+        data["robot"] = {"model": told.model, **changed}
     lines: list[str] = []
     for key, value in data.items():
         if key == "obstacles" and value:

@@ -110,7 +110,7 @@ def test_a_misspelt_key_gets_a_suggestion_and_the_allowed_keys():
     assert only(GOOD + "robot: {max_sped: 1}") == (
         "x.yaml:4: robot.max_sped: unknown key; did you mean 'max_speed'? "
         "allowed: model, left_wheel, right_wheel, radius, track, wheel_radius, mass, max_speed, "
-        "max_turn_rate, acceleration, turn_acceleration"
+        "max_turn_rate, acceleration, turn_acceleration, slip, latency"
     )
     assert "did you mean 'obstacles'?" in only(GOOD + "obstacle: []")
     assert "did you mean 'weights'?" in only(GOOD + "planner: {name: fuzzy, wieghts: [1, 1]}")

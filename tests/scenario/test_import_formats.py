@@ -219,3 +219,20 @@ def test_a_picture_needs_its_scale(tmp_path: Path) -> None:
     ).scenario
     assert scenario.arena.size == (6.0, 4.0)
     assert isinstance(scenario, Scenario)
+
+
+@pytest.mark.parametrize("robot", [None, "turtlebot3-waffle"])
+def test_a_map_that_is_yaml_is_kept_and_its_scenario_says_only_what_is_its_own(
+    inside: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, robot: str | None
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("lab.yaml", "lab.pgm"):
+        (tmp_path / name).write_bytes((MAPS / name).read_bytes())
+    ends = ("--start", "0,5.8", "--goal", "0.9,2.63")
+    inside("import", "lab.yaml", *ends, *(("--robot", robot) if robot else ()))
+    told = (tmp_path / "lab.scenario.yaml").read_text()
+    assert (tmp_path / "lab.yaml").read_bytes() == (MAPS / "lab.yaml").read_bytes()
+    assert "null" not in told
+    assert ("robot: {model: turtlebot3-waffle}" in told) == (robot is not None)
+    given = options_of(start=ends[1], goal=ends[3], robot=robot)
+    assert load_scenario("lab.scenario.yaml") == import_map(MAPS / "lab.yaml", given).scenario
