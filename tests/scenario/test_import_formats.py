@@ -228,7 +228,7 @@ def test_a_map_that_is_yaml_is_kept_and_its_scenario_says_only_what_is_its_own(
     monkeypatch.chdir(tmp_path)
     for name in ("lab.yaml", "lab.pgm"):
         (tmp_path / name).write_bytes((MAPS / name).read_bytes())
-    ends = ("--start", "0,5.8", "--goal", "0.9,2.63")
+    ends = ("--start", "-1.18,5.81", "--goal", "0.9,2.63")
     inside("import", "lab.yaml", *ends, *(("--robot", robot) if robot else ()))
     told = (tmp_path / "lab.scenario.yaml").read_text()
     assert (tmp_path / "lab.yaml").read_bytes() == (MAPS / "lab.yaml").read_bytes()
