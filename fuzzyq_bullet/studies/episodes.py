@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.planning import PlannerSettings, settings_for
@@ -70,6 +70,7 @@ class Outfit(BaseModel):
         robot: Its model; None for that of the environment.
         max_speed: Its greatest speed (m/s); None for that of the model, or of the environment.
         range: How far it sees (m); None for 5·S_p.
+        disturbed: What disturbs it: keys of ``sensor`` and ``robot`` in a scenario file.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -77,6 +78,7 @@ class Outfit(BaseModel):
     robot: str | None = None
     max_speed: float | None = None
     range: float | None = None
+    disturbed: dict[str, float] = Field(default_factory=dict)
 
     def on(self, task: Scenario) -> Scenario:
         """Return a scenario with this robot in it.
@@ -87,8 +89,10 @@ class Outfit(BaseModel):
         given = {} if self.max_speed is None else {"max_speed": self.max_speed}
         own = {} if self.robot is not None else task.robot.model_dump()
         model = {} if self.robot is None else {"model": self.robot}
-        robot = Robot.model_validate({**own, **model, **given})
-        sensor = ExactSensor.model_validate({"range": self.range})
+        slips = {key: v for key, v in self.disturbed.items() if key in Robot.model_fields}
+        noise = {key: v for key, v in self.disturbed.items() if key not in slips}
+        robot = Robot.model_validate({**own, **model, **given, **slips})
+        sensor = ExactSensor.model_validate({"range": self.range, **noise})
         return task.model_copy(update={"robot": robot, "sensor": sensor})
 
 

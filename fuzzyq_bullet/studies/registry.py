@@ -15,6 +15,7 @@ _BUNDLED = {
     "learning": "fuzzyq_bullet.studies.learning.study",
     "escape": "fuzzyq_bullet.studies.escape.study",
     "familiar": "fuzzyq_bullet.studies.familiar.study",
+    "robust": "fuzzyq_bullet.studies.robust.study",
 }
 """The modules of the package's own, in the order of a report."""
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,49}")

@@ -1,0 +1,1 @@
+"""How planners bear noise, lost readings, errors of the pose, slip and latency."""
