@@ -221,7 +221,7 @@ def test_a_picture_needs_its_scale(tmp_path: Path) -> None:
     assert isinstance(scenario, Scenario)
 
 
-@pytest.mark.parametrize("robot", [None, "turtlebot3-waffle"])
+@pytest.mark.parametrize("robot", [None, "create3"])
 def test_a_map_that_is_yaml_is_kept_and_its_scenario_says_only_what_is_its_own(
     inside: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, robot: str | None
 ) -> None:
@@ -233,6 +233,6 @@ def test_a_map_that_is_yaml_is_kept_and_its_scenario_says_only_what_is_its_own(
     told = (tmp_path / "lab.scenario.yaml").read_text()
     assert (tmp_path / "lab.yaml").read_bytes() == (MAPS / "lab.yaml").read_bytes()
     assert "null" not in told
-    assert ("robot: {model: turtlebot3-waffle}" in told) == (robot is not None)
+    assert ("robot: {model: create3}" in told) == (robot is not None)
     given = options_of(start=ends[1], goal=ends[3], robot=robot)
     assert load_scenario("lab.scenario.yaml") == import_map(MAPS / "lab.yaml", given).scenario
