@@ -173,7 +173,7 @@ class Robust(Study):
         rows = met_by_all(swept.rows)
         lines = lines_of(rows, list(plan.labels()), strengths)
         fields = len({row.place for row in rows})
-        about = f"wheels; seed {plan.seed}; {plan.count} obstacles in each of {fields}"
+        about = f"wheels; seed {plan.seed}; {fields} fields, {plan.count} obstacles each"
         targets = [one for line in lines if line.level == 2 for one in targets_of(line)]
         data = {
             "settings": dict(swept.settings),
