@@ -136,6 +136,7 @@ class Sensors:
         )
         pen = ImageDraw.Draw(image)
         towards = "the goal" if index == NO_DECISION else aim_name(self._trajectory, index)
+        towards = towards.partition(" of ")[0]  # of via points the number alone; there is no room
         names = ("left", f"to {towards}", "right")
         for row, (name, colour, length) in enumerate(zip(names, style.LINES, lengths, strict=True)):
             top = 2 + _ROW * row
