@@ -83,7 +83,7 @@ def watch(scenario: Scenario, *, speed: float = 1.0, stay: bool = True) -> Traje
 
 
 def still_meshes(scenario: Scenario) -> list[Mesh]:
-    """Return ground, walls, obstacles and the goal of a realised scenario, as they are filmed."""
+    """Return ground, walls, obstacles, via points and goal of a realised scenario, as filmed."""
     everywhere = meshes.EVERYWHERE
     return [
         *meshes.solids(
@@ -92,6 +92,8 @@ def still_meshes(scenario: Scenario) -> list[Mesh]:
             meshes.walls_of(scenario, everywhere),
             meshes.goal_disc(scenario),
         ),
+        *meshes.heading_mark(scenario),
+        *(meshes.disc(via.position, via.radius) for via in scenario.via),
         meshes.pole(scenario.goal.position, 1.0),
     ]
 

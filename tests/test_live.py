@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet import Trajectory, UserError, load_scenario, run, with_options
-from fuzzyq_bullet.live import KEYS, Spectator
+from fuzzyq_bullet.live import KEYS, Spectator, still_meshes
 from fuzzyq_bullet.physics.window import Line, WindowClosed
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.video import style
@@ -355,3 +355,18 @@ def test_a_screen_without_opengl_is_none(short: Path, tmp_path: Path) -> None:
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "has no OpenGL; `fuzzyq run` needs no screen" in done.stderr
+
+
+def test_via_points_and_the_heading_asked_for_are_on_the_ground() -> None:
+    rounds = load_scenario("rounds")
+    goal = rounds.goal.model_copy(update={"heading": None})
+    plain = rounds.model_copy(update={"via": (), "goal": goal})
+    more, less = still_meshes(rounds), still_meshes(plain)
+    assert len(more) == len(less) + len(rounds.via) + 1
+    tips = np.concatenate([mesh.vertices[:, :2] for mesh in more])
+    heading = rounds.goal.heading
+    assert heading is not None
+    x, y = rounds.goal.position
+    reach = 2.5 * rounds.goal.radius
+    tip = (x + reach * np.cos(heading), y + reach * np.sin(heading))
+    assert np.hypot(*(tips - tip).T).min() < 1e-9

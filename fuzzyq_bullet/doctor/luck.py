@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -24,7 +25,7 @@ class Gap(NamedTuple):
 
     Attributes:
         one: Index of an obstacle.
-        other: Index of the other obstacle; −1 for a wall.
+        other: Index of the other obstacle; −1 for a wall; the same between arms of a concave one.
         width: Clear width (m).
         place: Its middle (m).
     """
@@ -56,10 +57,12 @@ def examine_luck(scenario: Scenario, listed: int) -> Iterator[Finding]:
     told = []
     for gap in gaps:
         on_path = route is not None and _apart(route.points, gap.place) <= 2.0 * LUCK
-        wall = "a wall" if gap.other == WALL else f"obstacles[{gap.other}]"
+        other = "a wall" if gap.other == WALL else f"obstacles[{gap.other}]"
+        if gap.other == gap.one:
+            other = "itself"
         x, y = gap.place
         message = (
-            f"obstacles[{gap.one}] and {wall} leave a gap of {gap.width:.3f} m at "
+            f"obstacles[{gap.one}] and {other} leave a gap of {gap.width:.3f} m at "
             f"({x:.2f}, {y:.2f}), and the robot is {width:.3f} m wide"
         )
         if on_path:
@@ -100,6 +103,33 @@ def gaps_of(scenario: Scenario) -> Iterator[Gap]:
             x, y = place.tolist()
             # A pair is told at the one that comes later in the file, as its cause.
             yield Gap(i if j == WALL else j, j if j == WALL else i, width, (x, y))
+    for i, (corners, _) in enumerate(points):
+        yield from _between_arms(i, corners, every, most)
+
+
+def _between_arms(index: int, corners: Floats, every: Field, most: float) -> Iterator[Gap]:
+    """Yield the gaps between a corner of a concave obstacle and a side of its own."""
+    side = np.roll(corners, -1, axis=0) - corners
+    after = np.roll(side, -1, axis=0)
+    if len(corners) < 4 or (side[:, 0] * after[:, 1] - side[:, 1] * after[:, 0] >= 0.0).all():
+        return  # it is convex
+    found: list[Gap] = []
+    for corner in corners:
+        part = ((corner - corners) * side).sum(1) / np.maximum((side**2).sum(1), 1e-300)
+        way = corners + np.clip(part, 0.0, 1.0)[:, None] * side - corner
+        widths = np.hypot(*way.T)
+        near = np.flatnonzero((widths > 1e-6) & (widths <= most))
+        places = corner + way[near] / 2.0
+        clear = every.clearance(places) >= widths[near] / 2.0 - 1e-4
+        found += [
+            Gap(index, index, float(widths[k]), (float(x), float(y)))
+            for k, (x, y) in zip(near[clear], places[clear], strict=True)
+        ]
+    kept: list[Gap] = []
+    for gap in sorted(found, key=lambda one: one.width):
+        if all(math.dist(gap.place, one.place) > 2.0 * most for one in kept):
+            kept.append(gap)
+    yield from kept
 
 
 def _to_wall(point: Floats, scenario: Scenario) -> float:

@@ -23,6 +23,8 @@ MOST = 300
 _BEFORE, _BEHIND = 0.3, 0.1
 _NEAR = 0.004
 _DIRECTIONS = 24
+_GRAZES = 0.1
+"""A ray grazes what a disc of ``TOLERANCE`` touches so much earlier (m)."""
 
 
 def examine_sight(scenario: Scenario, listed: int) -> Iterator[Finding]:
@@ -74,15 +76,22 @@ def _rays_at(obstacle: Shape) -> tuple[Floats, Floats]:
 def _rays_in(arena: Arena) -> tuple[Floats, Floats]:
     """Return starts and ends (m) of rays from the middle of an arena at its walls."""
     angle = np.linspace(0.0, math.tau, _DIRECTIONS, endpoint=False)
-    middle = np.array(arena.size) / 2.0
-    ends = middle + np.hypot(*middle) * 1.1 * np.column_stack([np.cos(angle), np.sin(angle)])
+    half = np.array(arena.size) / 2.0
+    middle = np.array(arena.origin) + half
+    ends = middle + np.hypot(*half) * 1.1 * np.column_stack([np.cos(angle), np.sin(angle)])
     return np.tile(middle, (len(ends), 1)), ends
 
 
 def _differs(world: Inspection, starts: Floats, ends: Floats) -> str:
     """Say where rays, solid and geometry differ most; nothing if they do not."""
+    field = world.field
+    exact = _reach(field, starts, ends)
+    # What begins in a part of a concave obstacle, or grazes a side or a corner, proves nothing.
+    tells = (field.clearance(starts) > TOLERANCE) & (
+        exact - _reach(field, starts, ends, TOLERANCE) < _GRAZES
+    )
+    starts, ends, exact = starts[tells], ends[tells], exact[tells]
     seen, solid = world.seen(starts, ends), world.solid(starts, ends)
-    exact = _exact(world.field, starts, ends)
     for mine, other, words in (
         (seen, solid, "rays meet it {by} nearer than the body does"),
         (solid, seen, "the body meets it {by} before the rays do"),
@@ -99,13 +108,13 @@ def _differs(world: Inspection, starts: Floats, ends: Floats) -> str:
     return ""
 
 
-def _exact(field: Field, starts: Floats, ends: Floats) -> Floats:
-    """Return how far (m) rays get by the exact geometry, shape (K,)."""
+def _reach(field: Field, starts: Floats, ends: Floats, radius: float = 0.0) -> Floats:
+    """Return how far (m) a disc gets along rays by the exact geometry, shape (K,)."""
     reach = []
     for start, end in zip(starts, ends, strict=True):
         x, y = (end - start).tolist()
         length, heading = math.hypot(x, y), math.atan2(y, x)
-        reach.append(float(field.free_distance(start, [heading], 0.0, length)[0]))
+        reach.append(float(field.free_distance(start, [heading], radius, length)[0]))
     return np.array(reach)
 
 

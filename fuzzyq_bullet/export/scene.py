@@ -27,6 +27,7 @@ from foxglove.messages import (
     SceneEntityDeletionType,
     SceneUpdate,
     SpherePrimitive,
+    TextPrimitive,
     Timestamp,
     TriangleListPrimitive,
     Vector3,
@@ -58,10 +59,13 @@ def stamp(time: int) -> Timestamp:
 def world_entities(scenario: Scenario) -> SceneUpdate:
     """Return all that stands still: each obstacle, the walls, via points, the goal."""
     walls = meshes.walls_of(scenario, meshes.EVERYWHERE)
-    entities = [_entity("goal", solids=[meshes.goal_disc(scenario)])]
+    goal = [meshes.goal_disc(scenario), *meshes.heading_mark(scenario)]
+    entities = [_entity("goal", solids=goal)]
     for index, via in enumerate(scenario.via):
         disc = meshes.disc(via.position, via.radius)
-        entities.append(_entity(f"via[{index}]", solids=[disc], about={"number": index + 1}))
+        name, number = f"via[{index}]", index + 1
+        text = _number_over(via.position, number)
+        entities.append(_entity(name, solids=[disc], about={"number": number}, texts=[text]))
     if walls:
         wall = meshes.prisms(walls, 0.0, WALL_HEIGHT, style.WALL)
         entities.append(_entity("walls", solids=[wall]))
@@ -72,11 +76,23 @@ def world_entities(scenario: Scenario) -> SceneUpdate:
     return SceneUpdate(entities=entities)
 
 
+def _number_over(position: tuple[float, float], number: int) -> TextPrimitive:
+    """Return a number that stands over a place (m) and always faces who looks."""
+    return TextPrimitive(
+        pose=_pose(*position, 0.3),
+        billboard=True,
+        font_size=0.3,
+        scale_invariant=False,
+        color=_colour(style.GOAL),
+        text=str(number),
+    )
+
+
 def robot_entities(model: RobotModel) -> SceneUpdate:
     """Return the robot in its own frame, with an arrow that shows which way it faces."""
-    nose = meshes.prisms(
-        [arrow((0.0, 0.0), 0.0, 1.2 * model.radius)], model.height, model.height + 0.005, style.CARD
-    )
+    size = model.radius * (1.2 if model.is_disc else 0.75)
+    outlines = [arrow((0.0, 0.0), 0.0, size)]
+    nose = meshes.prisms(outlines, model.height, model.height + 0.005, style.CARD)
     body = [_cylinder(model)] if model.is_disc else []
     outline = np.array(model.footprint)
     low = 2.0 * model.sensor_height - model.height

@@ -17,7 +17,7 @@ from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.trajectory import Trajectory
-from fuzzyq_bullet.video.footprints import arrow
+from fuzzyq_bullet.video.footprints import arrow, pointer
 
 
 class Stroke(NamedTuple):
@@ -109,8 +109,8 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
         axes.add_patch(Circle(via.position, via.radius, fc="none", ec=GREEN, lw=1.2, zorder=3))
         axes.annotate(str(number), via.position, color=GREEN, ha="center", va="center", zorder=8)
     if goal.heading is not None:
-        nose = arrow(goal.position, goal.heading, 1.5 * goal.radius)
-        axes.add_patch(Polygon(nose, fc="none", ec=GREEN, lw=1.2, zorder=8))
+        for part in pointer(goal.position, goal.heading, 2.5 * goal.radius):
+            axes.add_patch(Polygon(part, fc=GREEN, ec="none", zorder=8))
     axes.add_patch(Circle(goal.position, goal.radius, fc=_GOAL_FACE, ec="none", zorder=3))
     # Its rim is seen through the robot that came to rest there.
     axes.add_patch(Circle(goal.position, goal.radius, fc="none", ec=GREEN, lw=2.0, zorder=8))
@@ -183,8 +183,9 @@ def _escapes(axes: Axes, trajectory: Trajectory, shown: _Shown, targets: bool) -
 def _end(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     """Draw the robot where it came to its end, and where it touched something."""
     x, y = trajectory.ticks.position[-1].tolist()
-    radius = trajectory.scenario.robot.radius
-    nose = arrow((x, y), float(trajectory.ticks.heading[-1]), 1.15 * radius)
+    model = trajectory.scenario.robot.spec
+    size = model.radius * (1.15 if model.is_disc else 0.75)
+    nose = arrow((x, y), float(trajectory.ticks.heading[-1]), size)
     body = _body(trajectory.scenario, x, y, float(trajectory.ticks.heading[-1]))
     body.set(fc=INK, ec="none", zorder=7)
     axes.add_patch(body)

@@ -82,6 +82,8 @@ class _Search:
 
         A shortest way that does not head for the centre of the goal ends at one of them.
         """
+        if self.goal_radius == 0.0:
+            return np.zeros((0, 2))
         free = np.array(free_arcs(self.world, self.goal, self.goal_radius)).reshape(-1, 2)
         free = free[free[:, 1] < math.tau]
         angle = np.concatenate([free[:, 0], free.sum(axis=1)])

@@ -75,7 +75,11 @@ def _field(trajectory: Trajectory) -> dict[str, Any]:
         "walls": scenario.arena.walls,
         "extent": [_number(edge) for edge in extent_of(trajectory)],
         "start": list(scenario.start.position),
-        "goal": {"position": list(scenario.goal.position), "radius": scenario.goal.radius},
+        "goal": {
+            "position": list(scenario.goal.position),
+            "radius": scenario.goal.radius,
+            "heading": scenario.goal.heading,
+        },
         "via": [{"position": list(one.position), "radius": one.radius} for one in scenario.via],
         "obstacles": [
             {"corners": _numbers(points, 3), "radius": _number(radius)} for points, radius in solids

@@ -154,7 +154,8 @@ class Window:
             body, -1, rgbaColor=(*self._paint, 1.0), physicsClientId=self._client
         )
         top = model.height
-        self._line((0.0, 0.0, top), (model.radius, 0.0, top), (0.1, 0.1, 0.1), width=7, parent=body)
+        front = max(x for x, _ in model.footprint)
+        self._line((0.0, 0.0, top), (front, 0.0, top), (0.1, 0.1, 0.1), width=7, parent=body)
 
     def _follow(self, position: tuple[float, float]) -> None:
         told = self._api.getDebugVisualizerCamera(self._client)

@@ -15,6 +15,7 @@ from fuzzyq_bullet.columns import Column
 from fuzzyq_bullet.planning.base import Motion, Observation
 from fuzzyq_bullet.planning.decision import FARTHEST, Decision, DecisionError
 from fuzzyq_bullet.planning.settings import PlannerSettings
+from fuzzyq_bullet.quantities import Number
 from fuzzyq_bullet.wording import shorten
 
 PHYSICS_RATE = 240
@@ -74,9 +75,7 @@ def _whole_steps(rate: float) -> float:
     return rate
 
 
-Rate: TypeAlias = Annotated[
-    float, Strict(), Field(ge=1.0, le=HIGHEST_RATE), AfterValidator(_whole_steps)
-]
+Rate: TypeAlias = Annotated[Number, Field(ge=1.0, le=HIGHEST_RATE), AfterValidator(_whole_steps)]
 
 
 class CommandSettings(PlannerSettings):

@@ -34,6 +34,18 @@ def arrow(origin: tuple[float, float], heading: float, size: float) -> Floats:
     return np.asarray(shape @ np.array([(cos, sin), (-sin, cos)]) + origin)
 
 
+def pointer(origin: tuple[float, float], heading: float, length: float) -> list[Floats]:
+    """Return an arrow of a length (m) that begins at ``origin``: its shaft and its head.
+
+    Both are convex and anticlockwise, shapes (4, 2) and (3, 2).
+    """
+    cos, sin = math.cos(heading), math.sin(heading)
+    turn = np.array([(cos, sin), (-sin, cos)])
+    shaft = np.array([(0.0, -0.05), (0.65, -0.05), (0.65, 0.05), (0.0, 0.05)])
+    head = np.array([(0.6, -0.22), (1.0, 0.0), (0.6, 0.22)])
+    return [np.asarray(part * length @ turn + origin) for part in (shaft, head)]
+
+
 def clipped(polygon: Floats, window: Floats) -> Floats:
     """Return the part of a convex polygon within a convex anticlockwise window; maybe empty."""
     for a, b in zip(window, np.roll(window, -1, axis=0), strict=True):

@@ -10,7 +10,7 @@ import numpy as np
 from fuzzyq_bullet.physics.camera import Lens, Mesh
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import style
-from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for
+from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for, pointer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -119,6 +119,15 @@ def goal_disc(scenario: Scenario) -> Mesh:
 def disc(position: tuple[float, float], radius: float) -> Mesh:
     """Return a thin disc of the goal's colour on the ground; ``radius`` is in metres."""
     return prisms([np.add(position, radius * _CIRCLE)], 0.0, 0.01, style.GOAL)
+
+
+def heading_mark(scenario: Scenario) -> list[Mesh]:
+    """Return an arrow on the ground that shows where the robot shall face in the goal, if asked."""
+    goal = scenario.goal
+    if goal.heading is None:
+        return []
+    parts = pointer(goal.position, goal.heading, 2.5 * goal.radius)
+    return [prisms(parts, 0.0, 0.015, style.GOAL)]
 
 
 def pole(position: tuple[float, float], height: float) -> Mesh:

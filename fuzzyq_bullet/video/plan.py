@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for
+from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for, pointer
 from fuzzyq_bullet.video.marks import grid_step
 from fuzzyq_bullet.video.style import MAP
 
@@ -92,9 +92,12 @@ class Plan:
 
         def start(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
             centre = self.spot([scenario.start.position])[0]
-            radius = max(5.0 * unit, scenario.robot.radius * self.scale)
-            width = round(2 * unit * at.factor)
-            pen.ellipse(at.disc(centre, radius), outline=255, width=width)
+            body = scenario.robot.spec.footprint_at(
+                *scenario.start.position, scenario.start_heading()
+            )
+            larger = max(1.0, 5.0 * unit / (scenario.robot.radius * self.scale))
+            rim = centre + larger * (self.spot([*body, body[0]]) - centre)
+            pen.line(at(rim), 255, round(2 * unit * at.factor), joint="curve")
 
         def via(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
             for number, one in enumerate(scenario.via, 1):
@@ -102,19 +105,16 @@ class Plan:
                 radius = max(7.0 * unit, one.radius * self.scale)
                 width = round(2 * unit * at.factor)
                 pen.ellipse(at.disc(centre, radius), outline=255, width=width)
-                size = 14 * unit * at.factor
-                pen.text(at([centre])[0], str(number), fill=255, font_size=size, anchor="mm")
+                font = style.font(round(14 * unit * at.factor), bold=True)
+                # Beside the ring, towards the middle: the reticle may stand in the ring.
+                towards = np.where(centre > (self._rect.width / 2, self._rect.height / 2), -1, 1)
+                beside = centre + 0.71 * (radius + 10 * unit) * towards
+                pen.text(at([beside])[0], str(number), 255, font, anchor="mm")
 
         def facing(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
-            x, y = scenario.goal.position
-            heading = scenario.goal.heading or 0.0
-            long = 2.0 * max(scenario.goal.radius, 7.0 * unit / self.scale)
-            reach = [(long, 0.0), (0.6 * long, 0.25 * long), (0.6 * long, -0.25 * long)]
-            cos, sin = math.cos(heading), math.sin(heading)
-            tip, *barbs = [(x + a * cos - b * sin, y + a * sin + b * cos) for a, b in reach]
-            width = round(2.5 * unit * at.factor)
-            for begin in ((x, y), *barbs):
-                pen.line(at(self.spot([begin, tip])), 255, width)
+            long = 2.5 * max(scenario.goal.radius, 7.0 * unit / self.scale)
+            for part in pointer(scenario.goal.position, scenario.goal.heading or 0.0, long):
+                pen.polygon(at(self.spot(part)), fill=255)
 
         goal_at = self.spot([scenario.goal.position])[0]
         goal_radius = max(7.0 * unit, scenario.goal.radius * self.scale)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -92,13 +93,19 @@ class RaceMap:
         if around is None:
             return
         if around[0] < box[2] and around[2] > box[0] and around[1] < box[3] and around[3] > box[1]:
+            model = self._runs[number].scenario.robot.spec
+            outline = np.array(model.footprint) / model.radius
+            narrow = radius * float(np.abs(outline).max(axis=0).min())
+            cos, sin = math.cos(moment.heading), math.sin(moment.heading)
+            outline = outline @ np.array([(cos, -sin), (-sin, -cos)])  # y points down
             for colour, reach in ((style.PAGE, radius + 1.5 * unit), (COLOURS[number], radius)):
+                body = spot + outline * reach
 
-                def disc(pen: ImageDraw.ImageDraw, at: paint.Scaled, reach: float = reach) -> None:
-                    pen.ellipse(at.disc(spot, reach), fill=255)
+                def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled, body: Floats = body) -> None:
+                    pen.polygon(at(body), fill=255)
 
-                paint.stamp(image, box, [spot], reach + 1, colour, disc)
-            size = max(round(radius * 1.3), 1)
+                paint.stamp(image, box, [spot], reach + 1, colour, draw)
+            size = max(round(1.3 * narrow), 1)
             at = (float(spot[0]) - box[0], float(spot[1]) + 0.36 * size - box[1])
             paint.write(image, at, str(number + 1), style.PAGE, size, bold=True, align="m")
         hit = self._hit(number, moment)

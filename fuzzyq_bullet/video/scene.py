@@ -13,6 +13,7 @@ from PIL import Image, ImageChops, ImageDraw
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera
 from fuzzyq_bullet.video import meshes, paint, style
 from fuzzyq_bullet.video.cameras import Camera, FixedCamera
+from fuzzyq_bullet.video.footprints import pointer
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.shots import SPAN, Shot
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
 DETAIL = 2
 """How many times larger everything is rendered, to be shrunk to smooth edges."""
 _FILL, _EDGE = 88, 235
-_SHADOW = np.array([(np.cos(a), np.sin(a)) for a in np.arange(20) * np.pi / 10]) * 0.225
-"""Outline of the robot's shadow about its centre (m)."""
+_SHADOW = 1.125
+"""How many times larger than the robot its shadow is."""
 _SMALLEST = 26.0
 """A robot that covers fewer points than this gets a ring around it."""
 
@@ -117,7 +118,7 @@ class Scene:
         if sensed is not self._sensed:
             self._sensed = sensed
             self._stains = self._stained(sensed)
-        shadow = self._stain(moment.position + _SHADOW, edge=0, fill=150)
+        shadow = self._stain(self._shadow(moment), edge=0, fill=150)
         target = None
         if sensed is not None and sensed.target is not None:
             target = self._seen([sensed.target])[0]
@@ -182,6 +183,12 @@ class Scene:
         layers = [self._stain(one, edge=_EDGE, fill=_FILL) for one in sensed.corridors]
         coloured = zip(style.LINES, layers, strict=False)
         return [(colour, layer) for colour, layer in coloured if layer is not None]
+
+    def _shadow(self, moment: Moment) -> Floats:
+        """Return the outline (m) of the robot's shadow."""
+        footprint = np.array(self._trajectory.scenario.robot.spec.footprint) * _SHADOW
+        cos, sin = math.cos(moment.heading), math.sin(moment.heading)
+        return np.asarray(footprint @ np.array([(cos, sin), (-sin, cos)]) + moment.position)
 
     def _stain(self, outline: ArrayLike, *, edge: int, fill: int) -> paint.Layer | None:
         """Return a piece of the ground (m) as a layer that covers nothing but ground."""
@@ -284,17 +291,27 @@ def _decorated(
                 pen.polygon(scaled(seen(outline + np.array((0.10, 0.14)) * part)), fill=140)
 
     def via(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
-        for one in scenario.via:
-            around = scaled(ring(one.position, one.radius))
-            pen.line(around, 255, round(2 * unit * scaled.factor), joint="curve")
+        for number, one in enumerate(scenario.via, 1):
+            around = ring(one.position, one.radius)
+            pen.line(scaled(around), 255, round(2 * unit * scaled.factor), joint="curve")
+            font = style.font(round(15 * unit * scaled.factor), bold=True)
+            low, high = around.min(axis=0), around.max(axis=0)  # the reticle may stand in it
+            beside = (low + high) / 2 + 0.71 * ((high - low) / 2 + 11 * unit) * (1.0, -1.0)
+            pen.text(scaled(beside)[0], str(number), 255, font, anchor="mm")
 
     def goal(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
         around = scaled(ring(scenario.goal.position, scenario.goal.radius))
         pen.polygon(around, fill=110)
         pen.line(around, 255, round(2 * unit * scaled.factor), joint="curve")
+        if scenario.goal.heading is not None:
+            long = 2.5 * scenario.goal.radius
+            for part in pointer(scenario.goal.position, scenario.goal.heading, long):
+                pen.polygon(scaled(seen(part)), fill=255)
 
     def start(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:
-        around = scaled(ring(scenario.start.position, scenario.robot.radius))
+        pose = (*scenario.start.position, scenario.start_heading())
+        body = scenario.robot.spec.footprint_at(*pose)
+        around = scaled(seen([*body, body[0]]))
         pen.line(around, 200, round(1.5 * unit * scaled.factor), joint="curve")
 
     for draw, tint in (

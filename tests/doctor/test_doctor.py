@@ -12,6 +12,7 @@ import pytest
 
 from fuzzyq_bullet.cli.app import app
 from fuzzyq_bullet.doctor import Finding, examine
+from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.scenario import Scenario, bundled_scenarios, load_scenario
 
 
@@ -54,6 +55,66 @@ def test_a_gap_as_wide_as_the_robot_on_its_path_is_found() -> None:
 def test_such_a_gap_elsewhere_is_a_note() -> None:
     [found] = findings(obstacles=[box(5, 1.0, 0.5, 0.5), box(5, 1.902, 0.5, 0.5)])
     assert (found.kind, found.wrong) == ("luck", False)
+
+
+def test_a_gap_between_arms_of_one_polygon_is_found() -> None:
+    # A wall across the arena with a door that is 0.402 m wide, in one piece: it meets behind.
+    door = [(5, 4.799), (5.2, 4.799), (5.2, 0.0), (9.8, 0.0), (9.8, 9.8), (5.2, 9.8)]
+    door += [(5.2, 5.201), (5, 5.201), (5, 10), (10, 10), (10, -0.2), (5, -0.2)]
+    told = {"obstacles": [{"shape": "polygon", "points": door}], "arena": {"walls": False}}
+    [found] = findings(**told)
+    assert (found.kind, found.wrong, found.loc) == ("luck", True, ("obstacles", 0))
+    assert "obstacles[0] and itself leave a gap of 0.402 m at (5" in found.message
+
+
+def test_rays_that_graze_or_begin_in_a_concave_polygon_prove_nothing() -> None:
+    hook = [(4, 4), (6, 4), (6, 6), (4, 6), (4, 5.85), (5.85, 5.85), (5.85, 4.15), (4, 4.15)]
+    assert findings(obstacles=[{"shape": "polygon", "points": hook}]) == []
+
+
+def test_walls_elsewhere_are_seen_where_they_are() -> None:
+    arena = {"size": [6, 4], "origin": [-40, 30]}
+    places = {"start": {"position": [-39, 32]}, "goal": {"position": [-36, 32]}}
+    assert findings(arena=arena, **places) == []
+
+
+def test_a_niche_in_which_a_rectangular_body_cannot_turn_is_found() -> None:
+    robot = {"model": "jackal"}
+    sides = [box(1, 5.4, 0.8, 0.3), box(1, 4.6, 0.8, 0.3)]  # 0.25 m from its middle; it needs 0.33
+    found = findings(robot=robot, start={"position": [1, 5], "heading": 0.0}, obstacles=sides)
+    assert ("turn", ("start", "position")) in [(one.kind, one.loc) for one in found]
+    wide = [box(1, 5.6, 0.8, 0.3), box(1, 4.4, 0.8, 0.3)]
+    found = findings(robot=robot, start={"position": [1, 5], "heading": 0.0}, obstacles=wide)
+    assert "turn" not in [one.kind for one in found]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("name: s\nstart: {position: [1, 5]}\ngoal: {position: [9, 5]}\nvia: 7\n", ":4: via"),
+        ("name: s\nstart: {position: [1, 5]}\n", "goal"),
+        (
+            "name: s\nstart: {position: [1, 5]}\ngoal: {position: [9, 5]}\nobstacles:\n"
+            "  - {shape: box, position: [1, 5.4], size: [0.8, 0.5]}\n",
+            ":5: obstacles[0]: overlaps the start",
+        ),
+        (None, "there is no such file"),
+    ],
+)
+def test_bad_input_is_one_line(text: str | None, line: str, tmp_path: Path) -> None:
+    file = tmp_path / "bad.yaml"
+    if text is not None:
+        file.write_text(text)
+    with pytest.raises(UserError) as wrong:
+        app(["doctor", str(file)], standalone_mode=False)
+    [told] = wrong.value.problems
+    assert line in told
+
+
+def test_bad_input_has_exit_code_2(tmp_path: Path) -> None:
+    order = [sys.executable, "-m", "fuzzyq_bullet", "doctor", str(tmp_path)]
+    done = subprocess.run(order, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
 
 
 def test_a_goal_walled_in_is_found() -> None:

@@ -171,6 +171,35 @@ def test_the_robots_frame_is_where_the_robot_was(record: Trajectory, file: File)
     assert [[p.position.x, p.position.y] for p in path.poses] == ticks.position.tolist()
 
 
+@pytest.mark.parametrize("name", ["rooms", "jackal", "rounds"])
+def test_polygons_rectangular_robots_and_tasks_are_in_space(name: str, record: Trajectory) -> None:
+    scenario = load_scenario(name)
+    stands = replace(record, scenario=scenario)
+    file = File(mcap_of(stands))
+    (scene,) = file.messages["/scene"]
+    there = {one.id: one for one in scene.entities}
+    assert len([one for one in there if one.startswith("obstacles")]) == len(scenario.obstacles)
+    low, high = corners(there["walls"]).min(axis=0), corners(there["walls"]).max(axis=0)
+    left, bottom, right, top = scenario.arena.bounds
+    assert (low[:2] < (left, bottom)).all()
+    assert (high[:2] > (right, top)).all()
+    for index, one in enumerate(scenario.obstacles):
+        outline = one.outline()
+        seen = corners(there[f"obstacles[{index}]"])
+        np.testing.assert_allclose(seen.min(axis=0)[:2], outline.min(axis=0), atol=0.02)
+        np.testing.assert_allclose(seen.max(axis=0)[:2], outline.max(axis=0), atol=0.02)
+    numbers = [one.texts[0].text for key, one in there.items() if key.startswith("via")]
+    assert numbers == [str(k + 1) for k in range(len(scenario.via))]
+    reach = np.hypot(*(corners(there["goal"])[:, :2] - scenario.goal.position).T).max()
+    assert (reach > 1.5 * scenario.goal.radius) == (scenario.goal.heading is not None)
+    (robot,) = file.messages["/robot"][0].entities
+    model = scenario.robot.spec
+    assert bool(robot.cylinders) == model.is_disc
+    if not model.is_disc:
+        span = np.ptp(corners(robot)[:, :2], axis=0)
+        np.testing.assert_allclose(span, model.size, atol=1e-9)
+
+
 def corners(entity: Any) -> np.ndarray[Any, Any]:
     return np.array([(p.x, p.y, p.z) for solid in entity.triangles for p in solid.points])
 
@@ -281,6 +310,7 @@ def test_a_planner_without_lines_has_none_and_leaves_its_numbers_out(record: Tra
     blank = {
         name: np.full_like(array, np.nan) if DECISIONS[name].blank else array
         for name, array in vars(record.decisions).items()
+        if array is not None
     }
     file = File(mcap_of(replace(record, decisions=type(record.decisions)(**blank))))
     assert {len(one.entities) for topic in ("/lines", "/aim") for one in file.messages[topic]} == {

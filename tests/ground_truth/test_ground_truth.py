@@ -451,3 +451,23 @@ def test_nothing_that_drives_or_plans_can_reach_it():
     for room in ("planning", "learning", "drives", "physics", "scenario", "episode.py"):
         files = [root / room] if room.endswith(".py") else (root / room).rglob("*.py")
         assert not [f for f in files if "ground_truth" in f.read_text(encoding="utf-8")]
+
+
+def test_a_way_through_a_via_point_passes_close_to_a_concave_polygon() -> None:
+    # The leg to a point of the via point's disc ends at a disc without a rim.
+    hook = [[8, 3], [10, 3], [10, 3.2], [8.2, 3.2], [8.2, 4.5], [8, 4.5]]
+    told = {
+        "name": "hook",
+        "arena": {"size": [16, 10]},
+        "start": {"position": [1.5, 5]},
+        "via": [{"position": [8, 5.2], "radius": 0.3}],
+        "goal": {"position": [14.5, 5], "radius": 0.4},
+        "obstacles": [
+            {"shape": "cylinder", "position": [5, 5.2], "radius": 0.4},
+            {"shape": "polygon", "points": hook},
+        ],
+    }
+    scenario = Scenario.model_validate(told)
+    way = shortest_path(scenario, 0.5988)
+    assert way is not None
+    assert 12.6 < way.length < 13.0

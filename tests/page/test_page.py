@@ -14,6 +14,7 @@ import pytest
 from fuzzyq_bullet.page import record_page
 from fuzzyq_bullet.page.document import MODULES
 from fuzzyq_bullet.planning.decision import MODES
+from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.trajectory import Decisions, Ticks, Trajectory
 from fuzzyq_bullet.video.explanation import reason
 from fuzzyq_bullet.video.timeline import Timeline
@@ -38,7 +39,10 @@ def repeated(drive: Trajectory, times: int) -> Trajectory:
     count = len(ticks["time"])
     again = {name: np.concatenate([array] * times) for name, array in ticks.items()}
     again["time"] = np.arange(count * times) * float(ticks["time"][1])
-    decided = {name: np.concatenate([array] * times) for name, array in decisions.items()}
+    decided = {
+        name: None if array is None else np.concatenate([array] * times)
+        for name, array in decisions.items()
+    }
     decided["tick"] = np.concatenate([decisions["tick"] + k * count for k in range(times)])
     return replace(drive, ticks=Ticks(**again), decisions=Decisions(**decided))
 
@@ -457,6 +461,39 @@ def test_two_minutes_are_less_than_two_megabytes(drive: Trajectory) -> None:
     assert len(run["ticks"]["time"]) == len(long.ticks.time)  # nothing is left out
     assert len(run["decisions"]["time"]) == len(long.decisions.tick)
     assert len(page.encode()) < 2e6
+
+
+def test_a_task_and_a_rectangular_robot_are_on_the_page(browser: Browser, tmp_path: Path) -> None:
+    start = {"position": [-3, 0], "heading": 0.0}
+    goal = {"position": [3, 0], "heading": 1.5}
+    via = [{"position": [0, 1]}, {"position": [1, -1]}]
+    rest = {"arena": {"size": [8, 6], "origin": [-4, -3]}, "robot": {"model": "jackal"}}
+    told = {"name": "task", "start": start, "goal": goal, "via": via, **rest}
+    page = record_page([synthetic.drive(Scenario.model_validate(told))])
+    run = data_of(page)["runs"][0]
+    assert run["field"]["goal"]["heading"] == 1.5
+    assert len(run["robot"]["footprint"]) == 4
+    path = tmp_path / "task.html"
+    path.write_text(page, encoding="utf-8")
+    browser.complaints.clear()
+    browser.open(path, width=1280, dark=False)
+    frame = "new Promise((done) => requestAnimationFrame(() => setTimeout(done)))"
+    browser.value(frame)
+    tip, ground = [3 + 0.35 * np.cos(1.5), 0.35 * np.sin(1.5)], [-1, -2]
+    seen = browser.value(
+        f"""(() => {{
+          const field = fuzzyq.views[0].field, {{width, height}} = field.still;
+          const {{data}} = field.still.getContext("2d").getImageData(0, 0, width, height);
+          return {json.dumps([tip, ground])}.map(([x, y]) => {{
+            const ratio = width / field.size[0];
+            const [left, top] = field.at(x, y).map((one) => Math.round(one * ratio));
+            const first = 4 * (top * width + left);
+            return [...data.slice(first, first + 4)];
+          }});
+        }})()"""
+    )
+    assert seen[0] != seen[1]  # the arrow reaches out of the goal
+    assert browser.complaints == []
 
 
 def test_a_very_long_run_is_thinned_out_and_keeps_its_end() -> None:

@@ -113,11 +113,10 @@ export class Field {
       pen.strokeRect(left, top, right - left, bottom - top);
     }
     pen.strokeStyle = colour.goal;
-    for (const { position, radius } of this.run.data.field.via ?? []) {
-      disc(pen, this.at(...position), Math.max(radius * this.scale, 8 * this.marks));
-      pen.stroke();
-    }
     pen.lineWidth = 3;
+    this.run.data.field.via.forEach(({ position, radius }, i) => {
+      this.drawVia(pen, this.at(...position), Math.max(radius * this.scale, 8 * this.marks), i + 1);
+    });
     const there = this.at(...goal.position);
     const goalRadius = Math.max(goal.radius * this.scale, 8 * this.marks);
     disc(pen, there, goalRadius);
@@ -126,15 +125,43 @@ export class Field {
     pen.fillStyle = colour.goal;
     pen.fill();
     pen.globalAlpha = 1;
-    const upwards = goal.position[1] >= start[1]; // each label on the side away from the other
+    if (goal.heading !== null) this.drawPointer(pen, there, -goal.heading, 2.5 * goalRadius);
+    // Each label on the side away from the other, and from the arrow.
+    const upwards = goal.heading === null ? goal.position[1] >= start[1] : Math.sin(goal.heading) < 0;
     this.label(pen, "goal", there, Math.max(goalRadius, 14 * this.marks), upwards);
     pen.strokeStyle = colour.muted;
     pen.lineWidth = 2;
     const here = this.at(...start);
-    disc(pen, here, 6 * this.marks);
+    const reach = Math.max(this.run.data.robot.radius * this.scale, 6 * this.marks);
+    this.outlineRobot(pen, here, this.run.ticks.heading[0], reach);
     pen.stroke();
-    this.label(pen, "start", here, 6, !upwards);
+    this.label(pen, "start", here, reach, !upwards);
     return canvas;
+  }
+
+  /** Draw a via point: a ring, with its number beside it, as the reticle may stand in it. */
+  drawVia(pen, [x, y], radius, number) {
+    disc(pen, [x, y], radius);
+    pen.stroke();
+    const [width, height] = this.size;
+    const beside = 0.71 * (radius + 9 * this.marks);
+    pen.fillStyle = colours().goal;
+    pen.font = `700 ${Math.round(13 * this.marks + 2)}px system-ui, sans-serif`;
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    pen.fillText(number, x + (x > width / 2 ? -beside : beside), y + (y > height / 2 ? -beside : beside));
+    pen.textBaseline = "alphabetic";
+  }
+
+  /** Draw an arrow that shows where the robot shall face; the angle is clockwise. */
+  drawPointer(pen, at, angle, length) {
+    pen.save();
+    pen.translate(...at);
+    pen.rotate(angle);
+    pen.fillStyle = colours().goal;
+    pen.fillRect(0, -0.05 * length, 0.65 * length, 0.1 * length);
+    triangle(pen, [0.8 * length, 0], 0, 0.2 * length);
+    pen.restore();
   }
 
   /** Write what a place is, above or below it. */
@@ -288,23 +315,27 @@ export class Field {
     }
   }
 
+  /** Begin a path along the robot's rim, turned to its heading. */
+  outlineRobot(pen, [left, top], heading, radius) {
+    const { footprint, radius: own } = this.run.data.robot;
+    if (!footprint) {
+      disc(pen, [left, top], radius);
+      return;
+    }
+    const scale = radius / own;
+    const [cos, sin] = [Math.cos(heading), Math.sin(heading)];
+    pen.beginPath();
+    for (const [x, y] of footprint) {
+      pen.lineTo(left + scale * (x * cos - y * sin), top - scale * (x * sin + y * cos));
+    }
+    pen.closePath();
+  }
+
   drawRobot(pen, moment) {
     const colour = colours();
     const radius = Math.max(this.run.data.robot.radius * this.scale, 8 * this.marks);
     const there = this.at(moment.x, moment.y);
-    const { footprint, radius: own } = this.run.data.robot;
-    if (footprint) {
-      const scale = radius / own;
-      const [cos, sin] = [Math.cos(moment.heading), Math.sin(moment.heading)];
-      pen.beginPath();
-      for (const [x, y] of footprint) {
-        const [east, north] = [scale * (x * cos - y * sin), scale * (x * sin + y * cos)];
-        pen.lineTo(there[0] + east, there[1] - north);
-      }
-      pen.closePath();
-    } else {
-      disc(pen, there, radius);
-    }
+    this.outlineRobot(pen, there, moment.heading, radius);
     pen.fillStyle = colour.robot;
     pen.fill();
     pen.strokeStyle = colour.page;

@@ -168,6 +168,7 @@ class Fuzzification:
             # With a clear way to the goal the planner does not look aside: Df is simply 0.
             said = ("way is clear", "not asked") if is_clear(d, decision) else ("", "")
             name, df = aim_name(self._trajectory, decision), float(d.difference[decision])
+            name = name.partition(" of ")[0]  # of via points the number alone; there is no room
             near = self._near.draw(
                 f"to {name}:", float(d.distance[decision]), d.near[decision], said[0]
             )

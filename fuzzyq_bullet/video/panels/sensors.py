@@ -112,11 +112,11 @@ class Sensors:
             pen.polygon(at(arrow((tip[0], tip[1]), sensed.heading, 0.2)), fill=style.TEXT)
             if sensed.aim is not None:
                 _mark_aim(pen, np.reshape(at(np.array([sensed.aim])), 2), side / 2)
-        centre, radius = side / 2, self._radius * self._scale
-        pen.ellipse(
-            (centre - radius, centre - radius, centre + radius, centre + radius), style.ROBOT
-        )
-        nose = arrow((centre, centre), -math.pi / 2, radius * 1.5)
+        model = self._trajectory.scenario.robot.spec
+        x, y = here.tolist()
+        pen.polygon(at(np.array(model.footprint_at(x, y, facing))), fill=style.ROBOT)
+        size = self._radius * self._scale * (1.5 if model.is_disc else 0.75)
+        nose = arrow((side / 2, side / 2), -math.pi / 2, size)
         pen.polygon([(x, y) for x, y in nose.tolist()], fill=style.PAGE)
         return image
 
@@ -136,6 +136,7 @@ class Sensors:
         )
         pen = ImageDraw.Draw(image)
         towards = "the goal" if index == NO_DECISION else aim_name(self._trajectory, index)
+        towards = towards.partition(" of ")[0]  # of via points the number alone; there is no room
         names = ("left", f"to {towards}", "right")
         for row, (name, colour, length) in enumerate(zip(names, style.LINES, lengths, strict=True)):
             top = 2 + _ROW * row
