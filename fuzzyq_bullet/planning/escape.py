@@ -32,7 +32,8 @@ slow robot."""
 BESIDE = math.radians(45.0)
 """Where the plain breakout looks which side has more room, if both need the same turn (rad)."""
 LOOK_AGAIN = 0.3
-"""On its way to a frontier the robot scans again after so much (m)."""
+"""On its way to a frontier the robot scans again after this part of its range, or of 1 m if it sees
+less far: where it sees farther, less of what it finds is new."""
 BETTER = 0.2
 """It goes for another frontier only if the way over it is shorter by so much (m)."""
 ARRIVED = 0.1
@@ -158,7 +159,7 @@ class Escape:
         # A frontier that was given up once is not given up again: so this ends.
         if (
             tried is not None
-            and moved > LOOK_AGAIN * observation.size
+            and moved > LOOK_AGAIN * max(1.0, observation.range)
             and not self._is_at(tried.point, self._left)
         ):
             self._scan_again(observation, tried)
