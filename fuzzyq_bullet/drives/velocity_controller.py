@@ -51,14 +51,17 @@ class VelocityController:
         """
         robot = self._robot
         error = wrap_angle(decision.heading - heading)
+        turn_rate = self.turn_rate(error)
         speed = min(
             # Only what leads towards the new heading counts; more than a quarter turn away from it
             # the robot stands while it turns.
             decision.step / self._step_time * max(0.0, math.cos(error)),
             robot.max_speed,
             self._stoppable_speed(decision.reach - travelled),
+            # A fast robot slows down for a turn: its tyres would not hold it on so tight an arc.
+            GRIP / abs(turn_rate) if turn_rate else math.inf,
         )
-        return Twist(speed, self.turn_rate(error))
+        return Twist(speed, turn_rate)
 
     def turn_rate(self, error: float) -> float:
         """Return the turn rate to aim for (rad/s) at an error of the heading (rad)."""

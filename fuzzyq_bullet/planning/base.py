@@ -219,6 +219,15 @@ class Observation:
         """How many times as long as usual the robot is to be waited for, at least 1."""
         return 1.0 if self.motion is None else self.motion.slowness
 
+    @property
+    def size(self) -> float:
+        """How many times as large as usual the robot is, at least 1.
+
+        Ways out were tried and measured with the usual robot; the lengths (m) of whatever serves
+        them are so many times as long. A smaller robot is not asked to be more exact.
+        """
+        return max(1.0, self.unit / STEP_UNIT)
+
 
 class Planner(Protocol):
     """A local planner: one observation in, one answer out.

@@ -70,16 +70,16 @@ class ObstacleMap:
         goal_side = wx * (gy - y1) - wy * (gx - x1)
         return not bool(((side * other <= 0.0) & (start_side * goal_side <= 0.0)).any())
 
-    def cost_to_go(self, goal: Point, starts: Sequence[Point]) -> list[float]:
+    def cost_to_go(self, goal: Point, starts: Sequence[Point], tight: float = TIGHT) -> list[float]:
         """Return what the shortest path from each start to the goal costs (m).
 
         It is its length. Where the points that were hit leave no path, but the known boundaries do,
-        it costs ``TIGHT`` more: the grid may be wrong about a gap. Infinite where neither do.
+        it costs ``tight`` more: the grid may be wrong about a gap. Infinite where neither do.
         """
         costs = self._lengths(goal, starts, self._hits)
         if not all(map(math.isfinite, costs)):
-            tight = [length + TIGHT for length in self._lengths(goal, starts, NO_HITS)]
-            costs = [a if math.isfinite(a) else b for a, b in zip(costs, tight, strict=True)]
+            narrow = [length + tight for length in self._lengths(goal, starts, NO_HITS)]
+            costs = [a if math.isfinite(a) else b for a, b in zip(costs, narrow, strict=True)]
         return costs
 
     def _lengths(self, goal: Point, starts: Sequence[Point], hits: Floats) -> list[float]:

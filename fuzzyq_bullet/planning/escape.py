@@ -32,7 +32,8 @@ slow robot."""
 BESIDE = math.radians(45.0)
 """Where the plain breakout looks which side has more room, if both need the same turn (rad)."""
 LOOK_AGAIN = 0.3
-"""On its way to a frontier the robot scans again after so much (m)."""
+"""On its way to a frontier the robot scans again after this part of its range, or of 1 m if it sees
+less far: where it sees farther, less of what it finds is new."""
 BETTER = 0.2
 """It goes for another frontier only if the way over it is shorter by so much (m)."""
 ARRIVED = 0.1
@@ -42,6 +43,8 @@ from there explores the frontier."""
 
 class Escape:
     """Breakout and sustained avoidance for one episode.
+
+    Its lengths are so many times as long for a larger robot.
 
     Args:
         following: Whether the avoidance is sustained. If not, it is the plain breakout of Fig. 6,
@@ -82,7 +85,7 @@ class Escape:
         here, to_goal = observation.position, goal.distance
         [middle] = observation.sense([goal.bearing])
         enough = min(breakout_at * observation.unit, observation.range, to_goal)
-        if to_goal < self._nearest - NEARER:
+        if to_goal < self._nearest - NEARER * observation.size:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._graph.pass_by(here)
 
@@ -135,7 +138,7 @@ class Escape:
         """Scan on the way to a frontier, and go for another if that has become better."""
         self._graph.scan(observation)
         self._scanned_at = observation.position
-        best = self._graph.best_frontier(observation, tried, BETTER)
+        best = self._graph.best_frontier(observation, tried, BETTER * observation.size)
         if best is None:
             self._frontier = None
         elif best[0] != tried:
@@ -154,17 +157,21 @@ class Escape:
         tried = self._frontier
         moved = math.dist(observation.position, self._scanned_at)
         # A frontier that was given up once is not given up again: so this ends.
-        if tried is not None and moved > LOOK_AGAIN and not _is_at(tried.point, self._left):
+        if (
+            tried is not None
+            and moved > LOOK_AGAIN * max(1.0, observation.range)
+            and not self._is_at(tried.point, self._left)
+        ):
             self._scan_again(observation, tried)
         while self._frontier is not None:
             tried = self._frontier
-            if math.dist(observation.position, tried.point) > ARRIVED:
+            if math.dist(observation.position, tried.point) > ARRIVED * observation.size:
                 segment = self._follower.next(observation)
                 if segment is not None:
                     way = along_heading(
                         observation, segment.heading, segment.length, self._mode, tried.point
                     )
-                    exact = segment.exact or _is_at(tried.point, self._failed)
+                    exact = segment.exact or self._is_at(tried.point, self._failed)
                     return way._replace(exact=exact, reach=segment.reach)
                 self._fail(tried)
             self._scan(observation)
@@ -176,13 +183,13 @@ class Escape:
 
         The robot may have come a little off the path that it saw; it goes back and aims again.
         """
-        if _is_at(tried.point, self._failed):
+        if self._is_at(tried.point, self._failed):
             self._graph.blacklist(tried)
         self._failed.append(tried.point)
 
-
-def _is_at(point: Point, places: list[Point]) -> bool:
-    return any(math.dist(point, place) <= NEAR for place in places)
+    def _is_at(self, point: Point, places: list[Point]) -> bool:
+        near = NEAR * self._graph.size
+        return any(math.dist(point, place) <= near for place in places)
 
 
 def _break_out(observation: Observation, bearing: float, middle: float) -> Aim:

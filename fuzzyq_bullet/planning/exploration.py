@@ -1,4 +1,8 @@
-"""The exploration graph: where the robot was, and the frontiers that it has not tried yet."""
+"""The exploration graph: where the robot was, and the frontiers that it has not tried yet.
+
+The lengths and prices are those for the usual robot, so many times as long for a larger one; only
+``SPACING`` is the same for all.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from functools import partial
 from typing import NamedTuple, TypeAlias
 
 from fuzzyq_bullet.planning.base import Observation
-from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
+from fuzzyq_bullet.planning.cost_to_go import TIGHT, ObstacleMap
 from fuzzyq_bullet.planning.frontiers import (
     Frontier,
     along,
@@ -100,6 +104,7 @@ class ExplorationGraph:
     Attributes:
         judge: Says which frontier is the best.
         leads_to_goal: Whether the goal was reached in an episode before.
+        size: How many times as large as usual the robot is that scanned.
     """
 
     def __init__(self) -> None:
@@ -113,6 +118,7 @@ class ExplorationGraph:
         self._joined = False
         self._sought: Frontier | None = None
         self.leads_to_goal = False
+        self.size = 1.0
 
     def begin_again(self) -> None:
         """Begin another episode in the same field: the robot is elsewhere, the map stays."""
@@ -134,7 +140,7 @@ class ExplorationGraph:
         known = [
             (lengths[index] + apart, index, apart)
             for index, node in enumerate(self._nodes)
-            if (apart := math.dist(node.point, goal)) <= NEAR or node.sees(goal)
+            if (apart := math.dist(node.point, goal)) <= NEAR * self.size or node.sees(goal)
         ]
         if known:
             _, index, apart = min(known)
@@ -148,7 +154,7 @@ class ExplorationGraph:
 
     def scan(self, observation: Observation) -> None:
         """Scan all around, and add what was seen: edges, obstacles and frontiers."""
-        here = observation.position
+        here, self.size = observation.position, observation.size
         index = self._add(here)
         node = self._nodes[index]
         node.scan = scan = scan_360(observation)
@@ -191,7 +197,7 @@ class ExplorationGraph:
         guess = partial(self._ways_on, ways, observation.goal)
         costs = self.judge(WaysOut(observation, points, ways, guess))
         chosen = self._frontiers[min(range(len(costs)), key=costs.__getitem__)]
-        if kept in self._frontiers and math.dist(chosen.point, kept.point) <= NEAR:
+        if kept in self._frontiers and math.dist(chosen.point, kept.point) <= NEAR * self.size:
             chosen = kept  # the same place, seen from elsewhere
         path, at = [chosen.point], chosen.node
         while at >= 0:
@@ -203,7 +209,7 @@ class ExplorationGraph:
         """Forget a frontier for good, and all others at the same place."""
         self._blacklist.append(tried.point)
         self._frontiers = [
-            one for one in self._frontiers if math.dist(one.point, tried.point) > NEAR
+            one for one in self._frontiers if math.dist(one.point, tried.point) > NEAR * self.size
         ]
 
     def _add(self, here: Point) -> int:
@@ -218,7 +224,7 @@ class ExplorationGraph:
 
     def _remember(self, frontiers: Iterable[Frontier]) -> None:
         for found in frontiers:
-            if any(math.dist(point, found.point) <= NEAR for point in self._blacklist):
+            if any(math.dist(point, found.point) <= NEAR * self.size for point in self._blacklist):
                 continue
             if not any(_is_explored(found, node) for node in self._scanned):
                 self._frontiers.append(found)
@@ -232,26 +238,36 @@ class ExplorationGraph:
         """
         points = [one.point for one in self._frontiers]
         straight = [math.dist(point, goal) for point in points]
-        doubts = [DOUBT if one.beyond is None else 0.0 for one in self._frontiers]
+        doubts = [DOUBT * self.size if one.beyond is None else 0.0 for one in self._frontiers]
         costs = [way + doubt + on for way, doubt, on in zip(ways, doubts, straight, strict=True)]
         best = min(range(len(costs)), key=costs.__getitem__)
         found = [doubt + on for doubt, on in zip(doubts, straight, strict=True)]
         # No path is shorter than the straight line: the obstacles count only if they cross it.
         if not self._obstacles.in_sight(points[best], goal):
-            for k, around in enumerate(costs_to_go(self._frontiers, self._obstacles, goal)):
-                found[k] += min(around - straight[k], ENCLOSED)
+            around = costs_to_go(self._frontiers, self._obstacles, goal, self.size)
+            for k, length in enumerate(around):
+                found[k] += min(length - straight[k], ENCLOSED)
         return found
 
 
-def costs_to_go(frontiers: Sequence[Frontier], obstacles: ObstacleMap, goal: Point) -> list[float]:
-    """Return the cost to go (m) from each frontier; infinite where there is no path."""
-    offsets = [[max(by, -one.distance) for by in _begins(one)] for one in frontiers]
+def costs_to_go(
+    frontiers: Sequence[Frontier], obstacles: ObstacleMap, goal: Point, size: float = 1.0
+) -> list[float]:
+    """Return the cost to go (m) from each frontier; infinite where there is no path.
+
+    Args:
+        frontiers: The frontiers.
+        obstacles: What has been seen.
+        goal: The goal (m).
+        size: How many times as large as usual the robot is.
+    """
+    offsets = [[max(by, -one.distance) for by in _begins(one, size)] for one in frontiers]
     starts = [
         along(one.point, one.heading, by)
         for one, some in zip(frontiers, offsets, strict=True)
         for by in some
     ]
-    found = iter(obstacles.cost_to_go(goal, starts))
+    found = iter(obstacles.cost_to_go(goal, starts, TIGHT * size))
     costs = [[max(by, 0.0) + next(found) for by in some] for some in offsets]
     return [next(filter(math.isfinite, some), math.inf) for some in costs]
 
@@ -278,18 +294,17 @@ def shortest_paths(nodes: Sequence[Node]) -> tuple[list[float], list[int]]:
     return lengths, before
 
 
-def _begins(one: Frontier) -> tuple[float, ...]:
+def _begins(one: Frontier, size: float) -> list[float]:
     if one.beyond is None:
-        return _INTO
-    if one.ahead:
-        return (math.dist(one.point, one.beyond), *_BACK)
-    return _BACK
+        return [by * size for by in _INTO]
+    back = [by * size for by in _BACK]
+    return [math.dist(one.point, one.beyond), *back] if one.ahead else back
 
 
 def _is_explored(one: Frontier, node: Node) -> bool:
     """Return whether a node's scan has shown what there was to see at a frontier."""
     if node.scan is None:
         return False
-    if math.dist(one.point, node.point) <= NEAR:
+    if math.dist(one.point, node.point) <= NEAR * node.scan.size:
         return True
     return one.beyond is not None and node.sees(one.beyond)

@@ -1,4 +1,7 @@
-"""Frontiers: where what a scan has shown to be free borders on what it could not see."""
+"""Frontiers: where what a scan has shown to be free borders on what it could not see.
+
+The lengths are those for the usual robot: they are so many times as long for a larger one.
+"""
 
 from __future__ import annotations
 
@@ -51,25 +54,25 @@ def find_frontiers(node: int, here: Point, scan: Scan) -> Iterator[Frontier]:
         here: Its position (m).
         scan: What was seen from there.
     """
-    count, last = len(scan.lengths), -math.inf
+    count, last, size = len(scan.lengths), -math.inf, scan.size
     for k, (heading, free) in enumerate(zip(scan.headings, scan.lengths, strict=True)):
-        if free < SHORTEST:
+        if free < SHORTEST * size:
             continue
         if free >= scan.range and heading - last >= APART:
             last = heading
-            distance = free - SHY
-            beyond = along(here, heading, free + BEHIND)
+            distance = free - SHY * size
+            beyond = along(here, heading, free + BEHIND * size)
             point = along(here, heading, distance)
             yield Frontier(node, point, heading, distance, beyond, ahead=True)
         for beside, side in ((k - 1, -1), ((k + 1) % count, 1)):
             hidden = scan.lengths[beside]
-            if free - hidden > JUMP:
-                distance = min(hidden + PEEK, free)
+            if free - hidden > JUMP * size:
+                distance = min(hidden + PEEK * size, free)
                 point = along(here, heading, distance)
-                beyond = along(point, heading + side * math.pi / 2, BEHIND)
+                beyond = along(point, heading + side * math.pi / 2, BEHIND * size)
                 yield Frontier(node, point, heading, distance, beyond)
     for k in scan.gaps:
-        if SHORTEST < scan.lengths[k] < scan.range:
+        if SHORTEST * size < scan.lengths[k] < scan.range:
             yield _gap(node, here, scan, k)
 
 
@@ -80,7 +83,10 @@ def find_concave_corners(node: int, here: Point, scan: Scan) -> Iterator[Frontie
     """
     count = len(scan.lengths)
     for k, free in enumerate(scan.lengths):
-        if free > SHALLOW and scan.lengths[k - 1] < free >= scan.lengths[(k + 1) % count]:
+        if (
+            free > SHALLOW * scan.size
+            and scan.lengths[k - 1] < free >= scan.lengths[(k + 1) % count]
+        ):
             yield _gap(node, here, scan, k)
 
 

@@ -59,7 +59,7 @@ class Segment(NamedTuple):
 
 
 class PathFollower:
-    """Drives the robot along a path.
+    """Drives the robot along a path. Its lengths are so many times as long for a larger robot.
 
     Args:
         points: Points to pass (m); each line from one to the next was driven or seen to be free.
@@ -75,8 +75,8 @@ class PathFollower:
 
         None if the robot makes no progress.
         """
-        here, points = observation.position, self._points
-        while len(points) > 1 and math.dist(here, points[0]) <= REACHED:
+        here, points, size = observation.position, self._points, observation.size
+        while len(points) > 1 and math.dist(here, points[0]) <= REACHED * size:
             self._drop(1)
         ahead = points[:AHEAD]
         lengths = [math.dist(here, point) for point in ahead]
@@ -94,7 +94,7 @@ class PathFollower:
         if not self._comes_nearer(length, observation):
             return None
         if not seen:
-            return _aside(observation, heading, min(length, LEAST))
+            return _aside(observation, heading, min(length, LEAST * size))
         # Every point but the last must be reached: the next one is not free from here.
         stop = length if len(points) > 1 else math.inf
         narrow = _is_narrow(observation, heading, length)
@@ -107,7 +107,7 @@ class PathFollower:
 
     def _comes_nearer(self, length: float, observation: Observation) -> bool:
         now = observation.time
-        if length < self._closest - NEARER:
+        if length < self._closest - NEARER * observation.size:
             self._closest, self._since = length, now
         return now - self._since <= PATIENCE * observation.slowness
 
@@ -115,7 +115,7 @@ class PathFollower:
 def _is_narrow(observation: Observation, heading: float, length: float) -> bool:
     """Return whether a heading slightly to either side is not free."""
     beside = observation.sense([heading - NARROW, heading + NARROW])
-    return min(beside) < min(length, 2.0 * LEAST)
+    return min(beside) < min(length, 2.0 * LEAST * observation.size)
 
 
 def _must_aim(observation: Observation, heading: float, length: float, narrow: bool) -> bool:
@@ -126,7 +126,7 @@ def _must_aim(observation: Observation, heading: float, length: float, narrow: b
     turn = abs(wrap_angle(heading - observation.heading))
     if observation.motion is None or turn <= FACING:
         return False
-    return narrow or (length <= BESIDE and turn > ASKEW)
+    return narrow or (length <= BESIDE * observation.size and turn > ASKEW)
 
 
 def _aside(observation: Observation, heading: float, enough: float) -> Segment | None:
@@ -135,7 +135,8 @@ def _aside(observation: Observation, heading: float, enough: float) -> Segment |
     Where none is, the robot stands in a gap that is hardly wider than itself: it leaves by the
     turn that lets it move farthest.
     """
-    most = CREEP, heading
+    creep = CREEP * observation.size
+    most = creep, heading
     further = range(len(SLIGHT), len(ASIDE), AT_ONCE)
     for turns in (SLIGHT, *(ASIDE[first : first + AT_ONCE] for first in further)):
         headings = [heading + turn for turn in turns]
@@ -143,4 +144,4 @@ def _aside(observation: Observation, heading: float, enough: float) -> Segment |
             if free >= enough:
                 return Segment(other, enough)
             most = max(most, (free, other))
-    return Segment(most[1], most[0], exact=True) if most[0] > CREEP else None
+    return Segment(most[1], most[0], exact=True) if most[0] > creep else None

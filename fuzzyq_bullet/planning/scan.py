@@ -30,7 +30,8 @@ FINER = (1.0 / 3.0, 1.0 / 9.0)
 turns: by these parts of the first spacing."""
 JUMP = 0.3
 """Where the free distance changes by more than this from one heading to the next (m), something
-ends, and what is behind it is hidden; where by less, one boundary goes on."""
+ends, and what is behind it is hidden; where by less, one boundary goes on. So many times as much
+for a larger robot."""
 
 TOUCH = 0.02
 """Whatever is no farther than this from the disc stops it (m)."""
@@ -69,6 +70,7 @@ class Scan:
         hits: Where its rays met something (m), shape (H, 2). Rays get through gaps that the disc
             does not: they see the far side of a pocket before the robot is in it.
         radius: Radius of the disc (m).
+        size: How many times as large as usual the robot is.
     """
 
     range: float
@@ -78,6 +80,7 @@ class Scan:
     boundary: Floats
     hits: Floats
     radius: float
+    size: float = 1.0
 
     def free(self, heading: float) -> float:
         """Return the free distance (m) along a heading: the lesser of its two neighbours."""
@@ -110,10 +113,11 @@ def scan_360(observation: Observation) -> Scan:
         least: Floats = travel.min(axis=1, initial=observation.range)
         return np.maximum(least, 0.0)
 
+    jump = JUMP * observation.size
     headings, lengths = first_headings, lengths_along(first_turns.conj()[:, None])
     step = math.tau / len(headings)
     for part in FINER:
-        edge = np.abs(lengths - _following(lengths)) > JUMP
+        edge = np.abs(lengths - _following(lengths)) > jump
         worth = np.flatnonzero(_peaks(lengths) | edge | _preceding(edge))
         finer = (headings[worth, None] + part * step * np.array([-2, -1, 1, 2])).ravel() % math.tau
         headings, first = np.unique(np.concatenate([headings, finer]).round(6), return_index=True)
@@ -123,7 +127,7 @@ def scan_360(observation: Observation) -> Scan:
     ends = np.array(observation.position) + lengths[:, None] * directions
     following = _following(np.arange(lengths.size))
     stopped = lengths < observation.range
-    joined = stopped & stopped[following] & (np.abs(lengths - lengths[following]) <= JUMP)
+    joined = stopped & stopped[following] & (np.abs(lengths - lengths[following]) <= jump)
     boundary = np.stack([ends[joined], ends[following[joined]]], axis=1)
     return Scan(
         observation.range,
@@ -133,6 +137,7 @@ def scan_360(observation: Observation) -> Scan:
         boundary,
         np.array(observation.position) + np.column_stack([hits.real, hits.imag]),
         observation.radius,
+        observation.size,
     )
 
 

@@ -33,8 +33,9 @@ def map_of(seen):
     return walls
 
 
-def observe(field, here, *, goal=(100.0, 0.0), time=0.0, sense=None):
-    """Return what a robot observes at a place, with exact rays."""
+def observe(field, here, *, goal=(100.0, 0.0), time=0.0, sense=None, size=1.0):
+    """Return what a robot, so many times as large as usual, observes with exact rays."""
+    far, wide = size * RANGE, size * WIDE
     return Observation(
         time=time,
         position=here,
@@ -43,12 +44,13 @@ def observe(field, here, *, goal=(100.0, 0.0), time=0.0, sense=None):
         turn_rate=0.0,
         goal=goal,
         goal_radius=0.2,
-        range=RANGE,
-        radius=WIDE,
+        range=far,
+        radius=wide,
         sensor=RangeSensor(
-            sense or (lambda headings: field.free_distance(here, headings, WIDE, RANGE)),
-            lambda headings: field.free_distance(here, headings, 0.0, RANGE + WIDE),
+            sense or (lambda headings: field.free_distance(here, headings, wide, far)),
+            lambda headings: field.free_distance(here, headings, 0.0, far + wide),
         ),
+        unit=size * BODY,
     )
 
 

@@ -101,6 +101,25 @@ def test_into_a_gap_an_exit_leads_as_far_as_is_free():
     ]
 
 
+@given(st.lists(st.tuples(st.floats(-2, 2), st.floats(-2, 2), st.floats(0.2, 0.5)), max_size=8))
+@settings(max_examples=20)
+def test_a_robot_twice_as_large_in_a_world_twice_as_large_finds_the_same_ways_twice_as_far(pillars):
+    world = np.array([one for one in pillars if math.hypot(*one[:2]) > one[2] + WIDE])
+    usual, large = (
+        scan_360(observe(Field(size * world), (0.0, 0.0), size=size)) for size in (1.0, 2.0)
+    )
+    # Gaps are told by what touches the disc, to a measure of the sensor and not of the robot.
+    first, second = (
+        [one for one in find_frontiers(0, (0.0, 0.0), scan) if one.beyond is not None]
+        for scan in (usual, large)
+    )
+    assert len(first) == len(second)
+    for one, other in zip(first, second, strict=True):
+        assert other.heading == pytest.approx(one.heading)
+        assert other.distance == pytest.approx(2.0 * one.distance)
+        assert other.beyond == pytest.approx((2.0 * one.beyond[0], 2.0 * one.beyond[1]))
+
+
 def explore(field, start, goal, most=1000):
     """Go where the memory sends a point robot until it sees the goal or nothing is left to try.
 
