@@ -34,7 +34,8 @@ def data_of(page: str) -> dict[str, Any]:
 
 def repeated(drive: Trajectory, times: int) -> Trajectory:
     """Return a record in which a drive happens several times over."""
-    ticks, decisions = vars(drive.ticks), vars(drive.decisions)
+    ticks = vars(drive.ticks)
+    decisions = {name: one for name, one in vars(drive.decisions).items() if one is not None}
     count = len(ticks["time"])
     again = {name: np.concatenate([array] * times) for name, array in ticks.items()}
     again["time"] = np.arange(count * times) * float(ticks["time"][1])
