@@ -2,7 +2,7 @@
 
 Turn and step are weighed, where the weights of the rule are known: the robot's own, or those that
 this rule has learned. Where the robot aims at a gap exactly the rules are not asked, and the table
-is grey.
+is grey. In the goal no rule is lit.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _LEVELS = 32
 _UNLIT: style.Colour = (38, 45, 56)
 _GREY: style.Colour = (84, 92, 104)
 """A rule that fires fully, and is not asked."""
-_TITLES = {True: "3  RULES THAT FIRE", False: "3  AIMS AT A GAP"}
+_FIRE, _AIMS, _ARRIVED = "3  RULES THAT FIRE", "3  AIMS AT A GAP", "3  RULES NOT ASKED"
 
 
 class Rules:
@@ -50,7 +50,7 @@ class Rules:
 
     def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
         self._canvas, self._image = canvas, canvas.image
-        self._decisions = trajectory.decisions
+        self._decisions, self._outcome = trajectory.decisions, trajectory.outcome
         base = controller_shown(trajectory.scenario.planner).base
         turn_unit = float(getattr(trajectory.scenario.planner, "turn_unit", math.radians(45.0)))
         self._rows, self._columns = len(base.row.sets), len(base.column.sets)
@@ -83,25 +83,26 @@ class Rules:
             words, size = style.fitting(one.meaning, _LEFT - 12, (15, 13))
             paint.write(self._image, (_LEFT - 8, y), words, style.MUTED, size, align="r")
         self._shown: dict[tuple[int, int], tuple[int, bool, bool]] = {}
-        self._asked: bool | None = None
-        self._decision: int | None = None
+        self._title = ""
+        self._drawn: tuple[int, bool] | None = None
 
     def draw(self, moment: Moment) -> None:
         """Light the rules as strongly as they fired for the decision shown."""
-        decision = moment.shown
-        if decision == self._decision:
+        decision, arrived = moment.shown, moment.over and self._outcome == "goal"
+        if (decision, arrived) == self._drawn:
             return
-        self._decision = decision
+        self._drawn = decision, arrived
         strengths = np.zeros((self._rows, self._columns))
-        asked = True
-        if decision != NO_DECISION:
+        asked = not arrived
+        if decision != NO_DECISION and not arrived:
             asked = is_asked(self._decisions, decision)
             strengths = np.clip(np.nan_to_num(self._decisions.rules[decision]), 0.0, 1.0)
         strongest = float(strengths.max())
         changed = []
-        if asked != self._asked:
-            self._asked = asked
-            self._canvas.rename(_TITLES[asked])
+        title = _ARRIVED if arrived else _FIRE if asked else _AIMS
+        if title != self._title:
+            self._title = title
+            self._canvas.rename(title)
         for row, cells in enumerate(strengths.tolist()):
             for column, strength in enumerate(cells):
                 # The root lifts weak rules into sight; the order of brightness stays.
