@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.video.footprints import Floats
 
 _LEFT, _TOP = 86, 48
+_WORDS = _LEFT - 12
+"""Most width of a row's name."""
 _TABLE = (180, 160)
 """Width and height of the table: its cells are as large as their number allows."""
 _ROOMY = 22
@@ -78,9 +80,11 @@ class Rules:
             paint.write(self._image, (right, 43), "right freer", style.MUTED, 15, align="r")
         # Where rows are too low for a word each, every second or third has one.
         every = math.ceil(16 / self._cell[1])
-        for row, one in list(enumerate(base.row.sets))[::every]:
+        named = list(enumerate(base.row.sets))[::every]
+        size = min(style.fitting(one.meaning, _WORDS, (15, 13))[1] for _, one in named)
+        for row, one in named:
             y = _TOP + row * self._cell[1] + self._cell[1] // 2 + 4
-            words, size = style.fitting(one.meaning, _LEFT - 12, (15, 13))
+            words, _ = style.fitting(one.meaning, _WORDS, (size,))
             paint.write(self._image, (_LEFT - 8, y), words, style.MUTED, size, align="r")
         self._shown: dict[tuple[int, int], tuple[int, bool, bool]] = {}
         self._title = ""
@@ -169,15 +173,19 @@ def _arrow(
     angle = turn.set_of(turn_label).center * turn_unit * weights[1]
     part = step.set_of(step_label).center / step.domain[1] * weights[0]
     size = (room[0] - _GAP, room[1] - _GAP)
-    length = (10.0 + 14.0 * min(max(part, 0.0), 1.0)) * min(size) / 30.0
+    shortest, longest = max(10.0, min(size) / 3.0), 0.8 * min(size)
+    length = shortest + (longest - shortest) * min(max(part, 0.0), 1.0)
+    # A head as long as its arrow would hide where it points.
+    point = min(8.0, 0.6 * length)
     way = np.array((-math.sin(angle), -math.cos(angle)))
     aside = np.array((way[1], -way[0]))
     middle = np.array(size) / 2
     tip, tail = middle + way * length / 2, middle - way * length / 2
-    head = np.stack([tip, tip - way * 8 + aside * 5, tip - way * 8 - aside * 5])
+    foot = tip - way * point
+    head = np.stack([tip, foot + aside * 0.6 * point, foot - aside * 0.6 * point])
 
     def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
-        pen.line(at(np.stack([tail, tip - way * 6])), 255, 3 * at.factor)
+        pen.line(at(np.stack([tail, tip - way * 0.75 * point])), 255, 3 * at.factor)
         pen.polygon(at(head), fill=255)
 
     return paint.mask((0, 0, *size), draw)
