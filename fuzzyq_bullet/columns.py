@@ -59,8 +59,13 @@ class Column:
         return np.dtype(np.int64 if self.whole or self.words else np.float64)
 
     def names(self, name: str) -> list[str]:
-        """Return a name for every number of one entry, such as ``lines_left``."""
-        return ["_".join((name, *labels)) for labels in product(*self.axes)]
+        """Return a name for every number of one entry, such as ``lines_left``; no two are alike.
+
+        Labels of one's own may hold ``_``: where that makes two alike, ``:`` joins instead.
+        """
+        parts = [(name, *labels) for labels in product(*self.axes)]
+        names = list(map("_".join, parts))
+        return names if len(set(names)) == len(names) else list(map(":".join, parts))
 
 
 Columns: TypeAlias = Mapping[str, Column]

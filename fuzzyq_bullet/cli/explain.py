@@ -67,12 +67,16 @@ def explain(
     """
     from fuzzyq_bullet.cli.rules import export_controller, rules_given, tell_gaps
     from fuzzyq_bullet.fuzzy.definition import MOST_SAMPLES
+    from fuzzyq_bullet.fuzzy.definition_checks import too_few
     from fuzzyq_bullet.fuzzy.inference import LEAST_SAMPLES
 
     if samples is not None and not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
         bounds = f"from {LEAST_SAMPLES} to {MOST_SAMPLES}"
         raise UserError(f"--samples: must be {bounds}, got {samples}")
     definition = rules_given(rules)
+    why = "" if samples is None else too_few(definition, samples)
+    if why:
+        raise UserError(f"--samples: {why}")
     tell_gaps(definition, rules)
     if export is not None:
         export_controller(definition, samples, export, rules, replace=replace)

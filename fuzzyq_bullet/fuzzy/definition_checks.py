@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
@@ -48,17 +48,8 @@ def gaps_of(definition: ControllerDefinition) -> Mistakes:
 
 def mistakes_in(definition: ControllerDefinition) -> Mistakes:
     """Return what does not fit together."""
-    found: Mistakes = []
-    average = definition.inference.defuzzification == "average"
-    samples = GRID if average else definition.inference.samples
-    for group, variables in (("inputs", definition.inputs), ("outputs", definition.outputs)):
-        for name, variable in variables.named():
-            for label, one in variable.sets.items():
-                output = group == "outputs"
-                points = samples if output else GRID
-                why = _useless(one, variable, points, singletons=output and average)
-                if why:
-                    found.append(((group, name, "sets", label), why))
+    found = _useless_sets(definition, "inputs", GRID)
+    found += _useless_outputs(definition, definition.inference.samples)
     if definition.outputs.step.range[0] < 0.0:
         found.append(
             (("outputs", "step", "range"), "a step cannot be negative; begin at 0 or more")
@@ -66,6 +57,33 @@ def mistakes_in(definition: ControllerDefinition) -> Mistakes:
     if not definition.outputs.turn.range[0] <= 0.0 <= definition.outputs.turn.range[1]:
         found.append((("outputs", "turn", "range"), "straight on, 0, must lie within it"))
     return found + _wrong_rules(definition)
+
+
+def too_few(definition: ControllerDefinition, samples: int) -> str:
+    """Say which set of an output none of so many points of the centroid meets; empty if all do."""
+    for (_, name, _, label), _ in _useless_outputs(definition, samples):
+        return f"with {samples} points, none belongs to the set {label} of {name}: take more"
+    return ""
+
+
+def _useless_outputs(definition: ControllerDefinition, samples: int) -> Mistakes:
+    average = definition.inference.defuzzification == "average"
+    return _useless_sets(definition, "outputs", GRID if average else samples, singletons=average)
+
+
+def _useless_sets(
+    definition: ControllerDefinition,
+    group: Literal["inputs", "outputs"],
+    points: int,
+    *,
+    singletons: bool = False,
+) -> Mistakes:
+    return [
+        ((group, name, "sets", label), why)
+        for name, variable in getattr(definition, group).named()
+        for label, one in variable.sets.items()
+        if (why := _useless(one, variable, points, singletons=singletons))
+    ]
 
 
 def _useless(

@@ -6,10 +6,19 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    Strict,
+    ValidationInfo,
+    field_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.fuzzy.definition import ControllerDefinition, Samples
+from fuzzyq_bullet.fuzzy.definition_checks import too_few
 from fuzzyq_bullet.fuzzy.paper import RULE_TABLES
 
 _Number: TypeAlias = Annotated[float, Strict(), Field(allow_inf_nan=False)]
@@ -73,6 +82,16 @@ class RoutineSettings(PlannerSettings):
         description="n of Eq. 22: points of the centroid; by default as the rules say, 101 for "
         "Table 4. The paper says 5.",
     )
+
+    @field_validator("samples")
+    @classmethod
+    def _meet_every_set(cls, value: int | None, info: ValidationInfo) -> int | None:
+        rules = info.data.get("rules")
+        if value is not None and isinstance(rules, ControllerDefinition):
+            why = too_few(rules, value)
+            if why:
+                raise PydanticCustomError("samples", "{why}", {"why": why})
+        return value
 
 
 class WeightsSettings(PlannerSettings):

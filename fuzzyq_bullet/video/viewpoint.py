@@ -22,6 +22,8 @@ YAWS = tuple(math.radians(angle) for angle in (0, -20, 20, -40, 40, -65, 65, 90)
 """How far it may look past north (rad), to the left positive."""
 MARGIN = 1.3
 """Least distance (m) from the robot's way to the edge of the picture: a detection line's length."""
+HARDLY_FURTHER = 1.25
+"""The whole arena is shown if the camera is at most so many times as far away then."""
 _EDGE = 10
 """Pixels left free along the edges of the picture."""
 _MOST_POINTS = 4000
@@ -55,29 +57,42 @@ def extent_of(trajectory: Trajectory, margin: float = MARGIN) -> tuple[float, fl
 
 
 def lens_for(trajectory: Trajectory, points: Floats, size: tuple[int, int]) -> Lens:
-    """Return the camera that shows points (m) of the arena largest, looking north if it can."""
+    """Return the camera that shows points (m) of the arena largest, looking north if it can.
+
+    It shows the whole arena, so that no wall is cut off, if that is hardly further away.
+    """
     span = float((points.max(axis=0) - points.min(axis=0)).max())
     margin = max(MARGIN, 0.06 * span)
     angle = np.arange(8) * (math.tau / 8)
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1) * margin
     flat = (points[:, None] + around).reshape(-1, 2)
-    if trajectory.scenario.arena.walls:  # nothing happens behind a wall
-        ends = np.array(trajectory.scenario.arena.bounds).reshape(2, 2)
-        flat = np.clip(flat, ends[0] - 0.1, ends[1] + 0.1)
+    if not trajectory.scenario.arena.walls:
+        return _best(flat, size)
+    low, high = np.array(trajectory.scenario.arena.bounds).reshape(2, 2)
+    low, high = low - 0.1, high + 0.1
+    near = _best(np.clip(flat, low, high), size)  # nothing happens behind a wall
+    whole = _best(np.array([low, (high[0], low[1]), high, (low[0], high[1])]), size)
+    return whole if _distance(whole) <= HARDLY_FURTHER * _distance(near) else near
+
+
+def _best(flat: Floats, size: tuple[int, int]) -> Lens:
+    """Return the camera that shows all that stands on points (m) of the ground largest."""
     low = np.column_stack([flat, np.zeros(len(flat))])
     corners = np.concatenate([low, np.add(low, (0.0, 0.0, OBSTACLE_HEIGHT))])
-
     best, best_score = None, -math.inf
     for yaw in YAWS:
         for pitch in PITCHES:
             lens = _fitted(corners, yaw, pitch, size)
-            distance = math.dist(lens.eye, lens.target)
             # Turning away from the map's direction costs orientation; it must be worth it.
-            score = (1.0 - 0.3 * abs(yaw) / (math.pi / 2)) / distance
+            score = (1.0 - 0.3 * abs(yaw) / (math.pi / 2)) / _distance(lens)
             if score > best_score * (1.0 + 1e-9):
                 best, best_score = lens, score
     assert best is not None
     return best
+
+
+def _distance(lens: Lens) -> float:
+    return math.dist(lens.eye, lens.target)
 
 
 def _fitted(points: Floats, yaw: float, pitch: float, size: tuple[int, int]) -> Lens:

@@ -22,6 +22,7 @@ from fuzzyq_bullet.fuzzy import (
     save_controller,
 )
 from fuzzyq_bullet.planning import PlannerSettings
+from fuzzyq_bullet.planning.controllers import fields_with
 from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.scenario.files import dump_scenario, parse_scenario
 from fuzzyq_bullet.video import paint
@@ -65,6 +66,19 @@ def drive(path: Path) -> Trajectory:
 
 
 # Driving
+
+
+def test_too_few_points_for_a_set_are_refused_where_the_planner_asks_for_them(
+    field: Callable[..., Path], fuzzyq: Call, tmp_path: Path
+) -> None:
+    narrow = SMOOTH.replace("trapezoidal: [0, 0, 0.4, 0.9]", "triangular: [0.198, 0.2, 0.202]")
+    (tmp_path / "narrow.yaml").write_text(narrow)
+    why = "with 5 points, none belongs to the set short of step: take more"
+    with pytest.raises(UserError, match=rf"mine.yaml:5: planner.samples: {why}$"):
+        load_scenario(field("narrow.yaml, samples: 5"))
+    load_scenario(field("narrow.yaml, samples: 11"))
+    done = fuzzyq("explain", "1", "0", "--rules", tmp_path / "narrow.yaml", "--samples", "5")
+    assert (done.returncode, done.stderr) == (2, f"error: --samples: {why}\n")
 
 
 def test_the_rules_of_a_file_drive_and_the_record_holds_them(
@@ -149,6 +163,14 @@ def test_the_film_shows_the_sets_that_were_asked(
         list(compositor.changes(Timeline(run).at(float(run.ticks.time[-1]) / 2)))
     assert {"near", "middle", "far", "alike"} < set(written)
     assert "VN" not in written
+
+
+def test_labels_that_would_give_columns_one_name_are_told_apart() -> None:
+    columns = fields_with(("A", "A_B"), ("B_C", "C"))
+    assert columns["near"].names("near") == ["near_A", "near_A_B"]
+    assert columns["rules"].names("rules") == [
+        "rules:A:B_C", "rules:A:C", "rules:A_B:B_C", "rules:A_B:C"
+    ]  # fmt: skip
 
 
 def test_a_record_of_an_unknown_planner_keeps_its_table(

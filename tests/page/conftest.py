@@ -9,6 +9,7 @@ from typing import TypeAlias
 import numpy as np
 import pytest
 
+from fuzzyq_bullet.fuzzy import ControllerDefinition, paper_definition
 from fuzzyq_bullet.page import lesson_page, record_page
 from fuzzyq_bullet.trajectory import Trajectory
 from tests.helpers import synthetic
@@ -33,14 +34,20 @@ def crash() -> Trajectory:
 def pages(
     drive: Trajectory, crash: Trajectory, tmp_path_factory: pytest.TempPathFactory
 ) -> dict[str, Path]:
-    """Pages by name: of one record, of two, of a planner without rules, and the lesson."""
+    """Pages by name: of one or two records, of a planner without rules, and two lessons."""
     folder = tmp_path_factory.mktemp("pages")
     plain = synthetic.drive(seconds=5.0, explained=False)
+    told = paper_definition().model_dump(mode="json")
+    for name, variable in told["inputs"].items():
+        variable["sets"] = {f"{one}_{name}"[:16]: how for one, how in variable["sets"].items()}
+    told["rules"] = {f"{label}_distance": row for label, row in told["rules"].items()}
+    wordy = ControllerDefinition.model_validate(told)
     texts = {
         "one": record_page([drive]),
         "two": record_page([drive, crash]),
         "plain": record_page([plain]),
         "lesson": lesson_page(),
+        "wordy": lesson_page(wordy),
     }
     for name, text in texts.items():
         (folder / f"{name}.html").write_text(text, encoding="utf-8")

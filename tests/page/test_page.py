@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,8 @@ def data_of(page: str) -> dict[str, Any]:
 
 def repeated(drive: Trajectory, times: int) -> Trajectory:
     """Return a record in which a drive happens several times over."""
-    ticks, decisions = vars(drive.ticks), vars(drive.decisions)
+    ticks = vars(drive.ticks)
+    decisions = {name: one for name, one in vars(drive.decisions).items() if one is not None}
     count = len(ticks["time"])
     again = {name: np.concatenate([array] * times) for name, array in ticks.items()}
     again["time"] = np.arange(count * times) * float(ticks["time"][1])
@@ -325,6 +327,25 @@ def test_it_fits_on_a_phone_and_on_a_projector(show: Open, name: str, width: int
           .map((one) => one.outerHTML.slice(0, 80))"""
     )
     assert beyond == []
+
+
+def test_labels_of_sets_do_not_overlap_and_the_strongest_is_written(show: Open) -> None:
+    browser = show("wordy", 400)
+    for df in (0.0, 3.0):
+        browser.value(f"fuzzyq.whatIf.setInputs(2.5, {df})")
+        plots = browser.value(
+            """[...document.querySelectorAll(".plot svg")].map((one) =>
+              [...one.querySelectorAll("text.label")]
+                .filter((label) => label.style.visibility !== "hidden")
+                .map((label) => [label.getBoundingClientRect(), label.classList])
+                .map(([box, classes]) => [box.left, box.right, classes.contains("strongest")])
+                .sort((a, b) => a[0] - b[0]))"""
+        )
+        assert len(plots) == 4
+        for labels in plots:
+            assert all(a[1] <= b[0] for a, b in pairwise(labels))
+        assert all(any(strongest for *_, strongest in labels) for labels in plots[:2])
+        assert [len(labels) for labels in plots] < [5, 5, 5, 5]
 
 
 # What if

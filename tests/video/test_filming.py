@@ -266,10 +266,8 @@ def numbered(run: Trajectory, seconds: float) -> Trajectory:
     keep = run.ticks.time <= seconds
     ticks = {name: column[keep] for name, column in vars(run.ticks).items()}
     within = run.decisions.tick < keep.sum()
-    decisions = {
-        name: None if column is None else column[within]
-        for name, column in vars(run.decisions).items()
-    }
+    told = {name: one for name, one in vars(run.decisions).items() if one is not None}
+    decisions = {name: column[within] for name, column in told.items()}
     return replace(
         run, ticks=replace(run.ticks, **ticks), decisions=replace(run.decisions, **decisions)
     )

@@ -99,8 +99,9 @@ def test_in_the_last_frame_the_robot_is_in_the_goal_and_heads_nowhere(
     arrived = drive(scenario(0, 0, start=(8.0, 5.75)), seconds=30.0)
     assert arrived.outcome == "goal"
     shown = texts(arrived, monkeypatch, over=True)
-    assert shown >= {"In the goal", "in the goal"}
+    assert shown >= {"In the goal", "in the goal", "3  RULES NOT ASKED"}
     assert not any("straight" in text for text in shown)
+    assert "3  RULES THAT FIRE" in texts(replace(arrived, outcome="stuck"), monkeypatch, over=True)
 
 
 def test_the_arrows_of_the_rules_are_weighed_by_what_each_has_learned(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from fuzzyq_bullet.video.scene import Scene
 from fuzzyq_bullet.video.shots import SPAN, Shots
 from fuzzyq_bullet.video.style import SCENE
 from fuzzyq_bullet.video.timeline import Timeline
+from fuzzyq_bullet.video.viewpoint import lens_for
 from tests.helpers.synthetic import drive, scenario
 
 if TYPE_CHECKING:
@@ -33,6 +34,20 @@ def far() -> Trajectory:
 
 def test_a_way_in_a_small_arena_is_one_shot() -> None:
     assert len(Shots(drive(seconds=2.0))) == 1
+
+
+@pytest.mark.parametrize("size", [(720, 720), (1280, 720)])
+def test_no_wall_is_cut_off_unless_the_arena_is_much_larger_than_the_way(
+    size: tuple[int, int],
+) -> None:
+    run = drive(scenario(4, 0, start=(1.0, 1.0), goal=(9.0, 9.0)), seconds=2.0)
+    corners = [(x, y, 0.0) for x in (0.0, 10.0) for y in (0.0, 10.0)]
+    lens = lens_for(run, np.array([(1.0, 1.0), (9.0, 9.0)]), size)
+    seen = lens.project(corners)
+    assert (seen > 0).all()
+    assert (seen < size).all()
+    near = lens_for(run, np.array([(1.0, 1.0), (3.0, 3.0)]), size)
+    assert not ((near.project(corners) > 0) & (near.project(corners) < size)).all()
 
 
 def test_shots_follow_one_another_and_none_spans_more_than_can_be_seen_from_near(

@@ -28,6 +28,7 @@ export class Plot {
       html("figcaption", {}, this.name, this.words),
       this.box,
     );
+    this.places = []; // from where to where each label reaches
     this.parts = { areas: [], curves: [], labels: [], dots: [] };
     this.build();
     whenSized(this.box, (width, height) => {
@@ -88,8 +89,11 @@ export class Plot {
       if (one.shape !== "singleton") {
         set(this.parts.areas[k], { d: `${curve}V${this.y(0)}H${this.x(low)}Z` });
       }
-      const at = Math.min(Math.max(this.x(one.centre), MARGIN + 8), this.width - MARGIN - 8);
+      const half = 0.55 * this.parts.labels[k].getComputedTextLength(); // bold ones are wider
+      const least = Math.max(MARGIN + 8, half);
+      const at = Math.min(Math.max(this.x(one.centre), least), this.width - least);
       set(this.parts.labels[k], { x: at, y: this.height - 4 });
+      this.places[k] = [at - half, at + half];
     });
     if (this.changed) this.drawHandles();
     if (this.shown) this.show(this.shown);
@@ -127,6 +131,7 @@ export class Plot {
       this.parts.dots[k].style.display = dotted ? "" : "none";
       if (dotted) set(this.parts.dots[k], { cx: this.x(this.variable.clip(value)), cy: this.y(degree) });
     });
+    this.thin(strongest);
     this.cursor.style.display = value === null ? "none" : "";
     if (value !== null) {
       const x = this.x(this.variable.clip(value));
@@ -137,6 +142,19 @@ export class Plot {
       const top = Array.from(points, (u, i) => `L${this.x(u).toFixed(1)} ${this.y(heights[i]).toFixed(1)}`);
       const [first, last] = [this.x(points[0]), this.x(points[points.length - 1])];
       set(this.aggregate, { d: `M${first} ${this.y(0)}${top.join("")}L${last} ${this.y(0)}Z` });
+    }
+  }
+
+  /** Hide the labels that others would overlap: the strongest stays, then the first. */
+  thin(strongest) {
+    const kept = [];
+    for (const k of [strongest, ...this.places.keys()]) {
+      const [left, right] = this.places[k];
+      const free = kept.every(([from, to]) => right < from || to < left);
+      if (k !== strongest || !kept.length) {
+        this.parts.labels[k].style.visibility = free ? "" : "hidden";
+      }
+      if (free) kept.push(this.places[k]);
     }
   }
 

@@ -206,7 +206,7 @@ export class WhatIf {
       : ["No rule fires. "];
     const way = Math.round((Math.abs(turn) * 180) / Math.PI) < 1 ? "goes " : "turns ";
     this.answer.replaceChildren(
-      ...parts, "So the robot ", strong(`${way}${turning(turn)}`), " and steps ", strong(`${fixed(step)} m`), ".");
+      ...parts, "So the robot ", strong(`${way}${turning(turn)}`), " and steps ", strong(`${fixed(step)}\u00a0m`), ".");
     if (!this.changed) {
       say(this.before, "");
       return;

@@ -76,7 +76,7 @@ class Action:
             self._last_row(index),
         )
         if moment.over and self._trajectory.outcome == "goal":
-            name = ""
+            name, step = "", math.nan
         decided = (turn, step, name) if math.isfinite(turn) else None
         before, self._shown = self._shown, [*facts, decided]
         for row, (fact, old) in enumerate(zip(facts, before, strict=False)):

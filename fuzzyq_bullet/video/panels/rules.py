@@ -2,7 +2,7 @@
 
 Turn and step are weighed, where the weights of the rule are known: the robot's own, or those that
 this rule has learned. Where the robot aims at a gap exactly the rules are not asked, and the table
-is grey.
+is grey. In the goal no rule is lit.
 """
 
 from __future__ import annotations
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.video.footprints import Floats
 
 _LEFT, _TOP = 86, 48
+_WORDS = _LEFT - 12
+"""Most width of a row's name."""
 _TABLE = (180, 160)
 """Width and height of the table: its cells are as large as their number allows."""
 _ROOMY = 22
@@ -38,7 +40,7 @@ _LEVELS = 32
 _UNLIT: style.Colour = (38, 45, 56)
 _GREY: style.Colour = (84, 92, 104)
 """A rule that fires fully, and is not asked."""
-_TITLES = {True: "3  RULES THAT FIRE", False: "3  AIMS AT A GAP"}
+_FIRE, _AIMS, _ARRIVED = "3  RULES THAT FIRE", "3  AIMS AT A GAP", "3  RULES NOT ASKED"
 
 
 class Rules:
@@ -50,7 +52,7 @@ class Rules:
 
     def __init__(self, trajectory: Trajectory, canvas: Canvas) -> None:
         self._canvas, self._image = canvas, canvas.image
-        self._decisions = trajectory.decisions
+        self._decisions, self._outcome = trajectory.decisions, trajectory.outcome
         base = controller_shown(trajectory.scenario.planner).base
         turn_unit = float(getattr(trajectory.scenario.planner, "turn_unit", math.radians(45.0)))
         self._rows, self._columns = len(base.row.sets), len(base.column.sets)
@@ -78,30 +80,33 @@ class Rules:
             paint.write(self._image, (right, 43), "right freer", style.MUTED, 15, align="r")
         # Where rows are too low for a word each, every second or third has one.
         every = math.ceil(16 / self._cell[1])
-        for row, one in list(enumerate(base.row.sets))[::every]:
+        named = list(enumerate(base.row.sets))[::every]
+        size = min(style.fitting(one.meaning, _WORDS, (15, 13))[1] for _, one in named)
+        for row, one in named:
             y = _TOP + row * self._cell[1] + self._cell[1] // 2 + 4
-            words, size = style.fitting(one.meaning, _LEFT - 12, (15, 13))
+            words, _ = style.fitting(one.meaning, _WORDS, (size,))
             paint.write(self._image, (_LEFT - 8, y), words, style.MUTED, size, align="r")
         self._shown: dict[tuple[int, int], tuple[int, bool, bool]] = {}
-        self._asked: bool | None = None
-        self._decision: int | None = None
+        self._title = ""
+        self._drawn: tuple[int, bool] | None = None
 
     def draw(self, moment: Moment) -> None:
         """Light the rules as strongly as they fired for the decision shown."""
-        decision = moment.shown
-        if decision == self._decision:
+        decision, arrived = moment.shown, moment.over and self._outcome == "goal"
+        if (decision, arrived) == self._drawn:
             return
-        self._decision = decision
+        self._drawn = decision, arrived
         strengths = np.zeros((self._rows, self._columns))
-        asked = True
-        if decision != NO_DECISION:
+        asked = not arrived
+        if decision != NO_DECISION and not arrived:
             asked = is_asked(self._decisions, decision)
             strengths = np.clip(np.nan_to_num(self._decisions.rules[decision]), 0.0, 1.0)
         strongest = float(strengths.max())
         changed = []
-        if asked != self._asked:
-            self._asked = asked
-            self._canvas.rename(_TITLES[asked])
+        title = _ARRIVED if arrived else _FIRE if asked else _AIMS
+        if title != self._title:
+            self._title = title
+            self._canvas.rename(title)
         for row, cells in enumerate(strengths.tolist()):
             for column, strength in enumerate(cells):
                 # The root lifts weak rules into sight; the order of brightness stays.
@@ -168,15 +173,19 @@ def _arrow(
     angle = turn.set_of(turn_label).center * turn_unit * weights[1]
     part = step.set_of(step_label).center / step.domain[1] * weights[0]
     size = (room[0] - _GAP, room[1] - _GAP)
-    length = (10.0 + 14.0 * min(max(part, 0.0), 1.0)) * min(size) / 30.0
+    shortest, longest = max(10.0, min(size) / 3.0), 0.8 * min(size)
+    length = shortest + (longest - shortest) * min(max(part, 0.0), 1.0)
+    # A head as long as its arrow would hide where it points.
+    point = min(8.0, 0.6 * length)
     way = np.array((-math.sin(angle), -math.cos(angle)))
     aside = np.array((way[1], -way[0]))
     middle = np.array(size) / 2
     tip, tail = middle + way * length / 2, middle - way * length / 2
-    head = np.stack([tip, tip - way * 8 + aside * 5, tip - way * 8 - aside * 5])
+    foot = tip - way * point
+    head = np.stack([tip, foot + aside * 0.6 * point, foot - aside * 0.6 * point])
 
     def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
-        pen.line(at(np.stack([tail, tip - way * 6])), 255, 3 * at.factor)
+        pen.line(at(np.stack([tail, tip - way * 0.75 * point])), 255, 3 * at.factor)
         pen.polygon(at(head), fill=255)
 
     return paint.mask((0, 0, *size), draw)
