@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
+from fuzzyq_bullet.physics.movers import Floats
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Motion, Observation
@@ -29,6 +30,7 @@ class Driver(ABC):
 
     Attributes:
         ticks: Its state at every tick so far; the first is the start.
+        poses: Where the moving obstacles were at every tick, shape (M, 3): x, y (m), turn (rad).
         steps: Steps of the simulation so far.
         collision: The first contact, after which the run is over.
         arrived: Whether the robot is where it should be.
@@ -42,11 +44,14 @@ class Driver(ABC):
             scenario.sensor, world.cast, scenario.robot.spec, rng, thinnest(scenario.obstacles)
         )
         self._field, self._radius = world.field, scenario.robot.radius
+        world.movers.start(scenario.seed)
+        self._movers = world.movers
         self._goal = scenario.goal
         self._targets = scenario.targets
         self._passing = Passing(scenario.via, scenario.start.position)
         self._motion = motion
         self.ticks: list[RobotState] = []
+        self.poses: list[Floats] = []
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
@@ -71,6 +76,11 @@ class Driver(ABC):
             motion=self._motion,
             unit=self._radius,
         )
+
+    def _note(self, state: RobotState) -> None:
+        """Keep the state of the robot, and of all that moves, at a tick."""
+        self.ticks.append(state)
+        self.poses.append(self._movers.poses())
 
     @abstractmethod
     def advance(self, decision: Decision) -> None:
