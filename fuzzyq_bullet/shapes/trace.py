@@ -6,10 +6,11 @@ import csv
 import io
 import math
 from bisect import bisect_right
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.errors import UserError
@@ -58,9 +59,10 @@ class Trace(Motion):
         description="Whether it begins again after the last row; else it stays there.",
     )
 
-    @model_validator(mode="after")
-    def _is_in_order(self) -> Trace:
-        for i, (one, two) in enumerate(zip(self.poses, self.poses[1:], strict=False), 2):
+    @field_validator("poses")
+    @classmethod
+    def _are_in_order(cls, poses: tuple[Row, ...]) -> tuple[Row, ...]:
+        for i, (one, two) in enumerate(pairwise(poses), 2):
             told = {"row": i, "time": f"{two[0]:g}", "before": f"{one[0]:g}"}
             if two[0] <= one[0]:
                 raise PydanticCustomError(
@@ -75,7 +77,7 @@ class Trace(Motion):
                     "row {row} (t = {time} s) is reached at {speed} m/s; at most {most} m/s",
                     {**told, "speed": f"{speed:.2f}", "most": f"{MAX_MOTION_SPEED:g}"},
                 )
-        return self
+        return poses
 
     def course(self, obstacle: Moving, surroundings: Surroundings) -> Course:
         """Return the way along the rows."""
