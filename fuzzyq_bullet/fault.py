@@ -31,9 +31,10 @@ def robot_speed(trajectory: Trajectory) -> float | None:
     if trajectory.collision is None:
         return None
     ticks, time = trajectory.ticks, trajectory.collision.time
+    if trajectory.scenario.drive == "kinematic":  # the contact cut the last move short
+        return float(trajectory.decisions.step[-1] / (ticks.time[-1] - ticks.time[-2]))
     before = ticks.time >= time - FAULT_TIME - 1e-9
-    if trajectory.scenario.drive == "wheels" and len(ticks.time) > 1:
-        before[-1] = False  # that speed is what the contact has made of it
+    before[-1] &= len(ticks.time) == 1  # the last speed is what the contact has made of it
     return float(np.abs(ticks.speed[before]).max(initial=0.0))
 
 
@@ -42,10 +43,14 @@ def mover_speed(trajectory: Trajectory) -> float | None:
     hit, scenario = trajectory.collision, trajectory.scenario
     if hit is None or hit.obstacle not in scenario.movers or len(trajectory.ticks.time) < 2:
         return None
-    k = scenario.movers.index(hit.obstacle)
-    before, after = trajectory.movers[-2, k].tolist(), trajectory.movers[-1, k].tolist()
-    span = float(trajectory.ticks.time[-1] - trajectory.ticks.time[-2])
-    return speed_at(scenario.obstacles[hit.obstacle].position, before, after, hit.point, span)
+    poses = trajectory.movers[:, scenario.movers.index(hit.obstacle)].tolist()
+    centre, time = scenario.obstacles[hit.obstacle].position, trajectory.ticks.time.tolist()
+    # A move of the kinematic drive is long, and the contact stopped the obstacle within the last.
+    last = 2 if scenario.drive == "kinematic" and len(time) > 2 else 1
+    return max(
+        speed_at(centre, poses[k - 1], poses[k], hit.point, time[k] - time[k - 1])
+        for k in range(-last, 0)
+    )
 
 
 def speeds_in_words(trajectory: Trajectory) -> str:
