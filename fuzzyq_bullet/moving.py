@@ -15,8 +15,12 @@ from fuzzyq_bullet.shapes.motion import placed, seen_from
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.scenario.models import Scenario
+    from fuzzyq_bullet.trajectory import Trajectory
 
 Floats: TypeAlias = NDArray[np.float64]
+
+_LEAST_WAY = 1e-6
+"""What moves less between two ticks (m) stands."""
 
 
 def poses_of(movers: Sequence[Floats], ticks: int) -> Floats:
@@ -117,3 +121,33 @@ def speed_at(
     local = seen_from(point, centre, after)
     was = placed(local, centre, before)[0]
     return float(np.hypot(*(np.asarray(point) - was))) / time
+
+
+def headings_of(trajectory: Trajectory) -> Floats:
+    """Return in which direction (rad) each moving obstacle goes from each tick, shape (T, M).
+
+    What stands keeps the direction it had, or is to have; what never goes anywhere has NaN.
+    """
+    poses = trajectory.movers
+    steps = np.diff(poses[:, :, :2], axis=0, append=poses[-1:, :, :2])
+    goes = np.hypot(steps[..., 0], steps[..., 1]) > _LEAST_WAY
+    headings = np.arctan2(steps[..., 1], steps[..., 0])
+    # The latest tick at which it went anywhere; before the first such tick, that one.
+    latest = np.maximum.accumulate(np.where(goes, np.arange(len(poses))[:, None], -1), axis=0)
+    at = np.where(latest < 0, goes.argmax(axis=0)[None], latest) if len(poses) else latest
+    told = np.take_along_axis(headings, at, axis=0)
+    return np.where(goes.any(axis=0)[None], told, np.nan)
+
+
+def poses_at(trajectory: Trajectory, time: float) -> Floats:
+    """Return where the moving obstacles are at any time (s) of a run, shape (M, 3)."""
+    ticks, poses = trajectory.ticks.time, trajectory.movers
+    after = min(max(int(np.searchsorted(ticks, time, side="right")), 1), len(ticks) - 1)
+    if after < 1:
+        return np.asarray(poses[0])
+    one, two = poses[after - 1], poses[after]
+    part = (time - float(ticks[after - 1])) / float(ticks[after] - ticks[after - 1])
+    between = one + (two - one) * min(max(part, 0.0), 1.0)
+    turn = np.remainder(two[:, 2] - one[:, 2] + np.pi, 2 * np.pi) - np.pi
+    between[:, 2] = one[:, 2] + turn * min(max(part, 0.0), 1.0)
+    return np.asarray(between)
