@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.columns import FAR
+from fuzzyq_bullet.columns import FAR, Column, Columns, csv_of
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.scenario.movers import courses_of
 from fuzzyq_bullet.shapes.motion import placed, seen_from
@@ -82,6 +82,30 @@ def first_poses(scenario: Scenario) -> Floats:
         (x, y), pose = scenario.obstacles[index].position, course.pose(0.0)
         poses.append((x + pose[0], y + pose[1], pose[2]))
     return np.array(poses, dtype=np.float64).reshape(-1, 3)
+
+
+MOVER_COLUMNS: Columns = {
+    "time": Column("s", "Simulated time."),
+    "obstacle": Column("", "Index of the obstacle in the scenario.", whole=True),
+    "position": Column("m", "Its centre, world frame.", (("x", "y"),)),
+    "turn": Column("rad", "How far it has turned about its centre, compared with the scenario."),
+    "heading": Column("rad", "In which direction it goes; blank if it goes nowhere.", blank=True),
+}
+"""A row for each moving obstacle at each tick."""
+
+
+def movers_csv(trajectory: Trajectory, *, units: bool = False) -> str:
+    """Return where the moving obstacles were as CSV (docs/record.md); see ``columns.csv_of``."""
+    poses, moving = trajectory.movers, trajectory.scenario.movers
+    count = poses.shape[1]
+    rows = {
+        "time": np.repeat(trajectory.ticks.time, count),
+        "obstacle": np.tile(np.array(moving[:count], dtype=np.int64), len(poses)),
+        "position": poses[:, :, :2].reshape(-1, 2),
+        "turn": poses[:, :, 2].ravel(),
+        "heading": headings_of(trajectory).ravel(),
+    }
+    return csv_of(MOVER_COLUMNS, rows, units=units)
 
 
 def checked_poses(poses: NDArray[Any] | None, scenario: Scenario, ticks: int) -> Floats:

@@ -64,7 +64,7 @@ class DrawnMovers:
         for k, (index, shape, outline, pieces) in enumerate(self._solids):
             heading = float(self._headings[tick, k])
             x, y, _ = pose = poses[k]
-            size = _NOSE * min(shape.extent(), 2.0 * shape.thickness(), 0.5)
+            size = _NOSE * min(shape.extent(), shape.thickness(), 0.5)
             nose = None if math.isnan(heading) else arrow((x, y), heading, size)
             parts = [placed(one, shape.position, pose) for one in pieces]
             drawn.append(Drawn(index, placed(outline, shape.position, pose), parts, nose))
