@@ -83,7 +83,7 @@ def mover_entities(scenario: Scenario) -> SceneUpdate:
         pieces = [piece - obstacle.position for piece in obstacle.pieces()]
         solids = [meshes.prisms(pieces, 0.0, OBSTACLE_HEIGHT, style.MOVER)]
         about = obstacle.model_dump(mode="json", exclude={"motion"})
-        frame = {"frame_id": mover_frame(index), "frame_locked": True}
+        frame: dict[str, Any] = {"frame_id": mover_frame(index), "frame_locked": True}
         entities.append(_entity(f"obstacles[{index}]", solids=solids, about=about, **frame))
     return SceneUpdate(entities=entities)
 

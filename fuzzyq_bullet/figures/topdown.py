@@ -132,7 +132,7 @@ def _movers(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     for k, one in enumerate(drawn):
         way = trajectory.movers[:, k, :2]
         axes.plot(*way.T, color=_MOVER_EDGE, lw=1.0, ls=(0, (4, 2)), zorder=2.2)
-        struck = hit is not None and hit.obstacle == one.index
+        struck = hit is not None and hit.obstacle == one.number
         look: _Look = {"fc": _MOVER, "ec": RED if struck else _MOVER_EDGE, "zorder": 2.6}
         axes.add_patch(Polygon(one.outline, lw=2.2 if struck else 1.0, **look))
         if one.nose is not None:

@@ -29,7 +29,7 @@ MARK = "fuzzyq page"
 """Stands as ``generator`` in every page, so that one is known again."""
 
 MODULES = (
-    "sets", "inference", "dom", "colours", "timeline", "arrows", "field", "plot", "rule_table",
+    "sets", "inference", "dom", "colours", "timeline", "arrows", "movers", "field", "plot", "rule_table",
     "surface", "senses", "judges", "rules", "acts", "run_view", "legend", "player", "what_if",
     "keys", "main",
 )  # fmt: skip

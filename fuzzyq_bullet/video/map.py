@@ -211,7 +211,7 @@ class Map:
         if hit.obstacle in trajectory.scenario.movers:
             last = len(trajectory.ticks.time) - 1
             drawn = self._movers.at(float(trajectory.ticks.time[-1]), last)
-            return self.spot(next(one.outline for one in drawn if one.index == hit.obstacle))
+            return self.spot(next(one.outline for one in drawn if one.number == hit.obstacle))
         return self._plan.outline(trajectory.scenario.obstacles[hit.obstacle])
 
     def _draw_mover(self, image: Image.Image, box: paint.Box, one: Drawn) -> None:

@@ -25,13 +25,13 @@ class Drawn(NamedTuple):
     """One moving obstacle at a moment.
 
     Attributes:
-        index: Which of the scenario's obstacles.
+        number: Which of the scenario's obstacles.
         outline: What it looks like from above (m), shape (N, 2).
         pieces: The same as convex polygons (m).
         nose: An arrow (m) that points where it goes, shape (4, 2); None if it goes nowhere.
     """
 
-    index: int
+    number: int
     outline: Floats
     pieces: list[Floats]
     nose: Floats | None
