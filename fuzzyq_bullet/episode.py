@@ -284,6 +284,7 @@ class Episode:
             outcome=outcome,
             physics_steps=driver.steps,
             collision=driver.collision,
+            movers=driver.poses,
             twists=self._asked,
         )
 

@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, SerializerFunctionWrapHandler, model_serializer
 
+from fuzzyq_bullet.fault import at_fault, speeds_in_words
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
 from fuzzyq_bullet.ground_truth.open_space import has_open_space
@@ -71,6 +72,8 @@ class Result(BaseModel):
         digest: Hash of the exact trajectory.
         version: Version of fuzzyq_bullet.
         via_passed: Via points that were passed; not there in a scenario without any.
+        at_fault: Whether the robot moved faster than 0.05 m/s when it touched something, or within
+            0.3 s before; not there if it touched nothing.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -95,13 +98,15 @@ class Result(BaseModel):
     digest: str
     version: str
     via_passed: int | None = None
+    at_fault: bool | None = None
 
     @model_serializer(mode="wrap")
     def _without_via(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out ``via_passed`` where there is no via point."""
+        """Leave out ``via_passed`` without via points, and ``at_fault`` without a contact."""
         told: dict[str, Any] = handler(self)
-        if self.via_passed is None:
-            told.pop("via_passed", None)
+        for name in ("via_passed", "at_fault"):
+            if getattr(self, name) is None:
+                told.pop(name, None)
         return told
 
     def to_dict(self) -> dict[str, str | int | float | None]:
@@ -149,6 +154,7 @@ def result_of(trajectory: Trajectory) -> Result:
         digest=trajectory.digest(),
         version=trajectory.version,
         via_passed=int(trajectory.via_passed[-1]) if scenario.via else None,
+        at_fault=at_fault(trajectory),
     )
 
 
@@ -174,7 +180,9 @@ def collision_text(trajectory: Trajectory, listed: int) -> str:
     if collision is None:
         return ""
     what = name_of(trajectory.scenario, collision.obstacle, listed)
-    return touch_in_words(what, collision.point, collision.time)
+    told = touch_in_words(what, collision.point, collision.time)
+    speeds = speeds_in_words(trajectory)
+    return f"{told}; {speeds}" if speeds else told
 
 
 def name_of(scenario: Scenario, index: int, listed: int) -> str:
@@ -215,7 +223,7 @@ def _mean_jerk(trajectory: Trajectory) -> float | None:
 
 
 def _is_crowded(scenario: Scenario) -> bool:
-    return len(Field.of(scenario.obstacles).discs) > MOST_ROUND
+    return len(Field.of(scenario.standing).discs) > MOST_ROUND
 
 
 def shortest_length(scenario: Scenario) -> float | None:

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from fuzzyq_bullet.columns import FAR
+from fuzzyq_bullet.scenario.problems import unknown_names
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.scenario.models import Scenario
@@ -46,6 +48,15 @@ def check_order(time: NDArray[np.float64], tick: NDArray[np.int64]) -> None:
     last = time.size - 1
     if tick.min() < 0 or tick.max() > last or (np.diff(tick) < 0).any():
         raise ValueError(f"decisions.tick does not run upwards within 0 to {last}")
+
+
+def mistake_in_record(error: ValidationError) -> str:
+    """Say what is wrong with the head of a record."""
+    if names := " and ".join(unknown_names(error)):
+        return f"made with {names}, not known here; --plugin FILE adds it"
+    first = error.errors(include_url=False)[0]
+    where = ".".join(str(part) for part in first["loc"])
+    return f"damaged record: {where}: {first['msg']}"
 
 
 def check_collision(collision: _Contact, scenario: Scenario) -> None:

@@ -23,16 +23,16 @@ from fuzzyq_bullet.columns import documented as with_columns
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.geometry import Field as Obstacles
+from fuzzyq_bullet.moving import checked_poses, clearance_of, poses_of
 from fuzzyq_bullet.planning.commands import COMMAND_FIELDS, command_arrays
 from fuzzyq_bullet.planning.controllers import fields_of, fields_with
 from fuzzyq_bullet.planning.decision import FIELDS, Decision
 from fuzzyq_bullet.planning.registry import planner_names
 from fuzzyq_bullet.planning.settings import PlannerSettings
-from fuzzyq_bullet.record_checks import check_collision, check_order
+from fuzzyq_bullet.record_checks import check_collision, check_order, mistake_in_record
 from fuzzyq_bullet.scenario.expectations import ANY_NAME
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.passing import passed_along
-from fuzzyq_bullet.scenario.problems import unknown_names
 from fuzzyq_bullet.untrusted import read_arrays
 from fuzzyq_bullet.version import __version__
 
@@ -129,6 +129,7 @@ class Trajectory:
         collision: The contact that ended it, if one did.
         ticks: The robot's motion.
         decisions: The planner's decisions.
+        movers: Where the moving obstacles were at every tick; see ``moving.poses_of``.
         version: Version of fuzzyq_bullet that made it.
     """
 
@@ -139,6 +140,12 @@ class Trajectory:
     ticks: Ticks
     decisions: Decisions
     version: str
+    movers: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)))
+
+    def __post_init__(self) -> None:
+        """Give a record without moving obstacles as many rows of none."""
+        if not self.movers.size:
+            object.__setattr__(self, "movers", poses_of((), len(self.ticks.time)))
 
     @classmethod
     def from_episode(
@@ -151,25 +158,25 @@ class Trajectory:
         outcome: Outcome,
         physics_steps: int,
         collision: Collision | None,
+        movers: Sequence[Floats] = (),
         twists: Mapping[int, tuple[float, float]] | None = None,
     ) -> Trajectory:
         """Return the record of an episode.
 
         Args:
             scenario: The scenario as it ran, every obstacle listed.
-            obstacles: Its obstacles and walls.
+            obstacles: Its standing obstacles and walls.
             states: The robot at every tick: time, x, y, heading, speed, turn rate and the speeds of
                 the left and right wheel.
             decisions: Each decision with the index of the tick it was taken at.
             outcome: How the episode ended.
             physics_steps: Steps of the simulation.
             collision: The contact that ended it, if one did.
+            movers: Where its moving obstacles were at every tick, shape (M, 3) each.
             twists: What the planner asked for instead, by the number of the decision.
         """
         at = np.array(states, dtype=np.float64)
-        # The point robot's moves may be long: what counts is the least on the way to each tick.
-        kinematic = scenario.drive == "kinematic"
-        told = obstacles.clearance_on_the_way if kinematic else obstacles.clearance
+        poses = poses_of(movers, len(at))
         return cls(
             scenario=scenario,
             outcome=outcome,
@@ -182,7 +189,7 @@ class Trajectory:
                 speed=at[:, 4],
                 turn_rate=at[:, 5],
                 wheel_speeds=at[:, 6:8],
-                clearance=told(at[:, 1:3]) - scenario.robot.radius,
+                clearance=clearance_of(scenario, obstacles, at[:, 1:3], poses),
             ),
             decisions=Decisions(
                 tick=np.array([tick for tick, _ in decisions], dtype=np.int64),
@@ -192,13 +199,14 @@ class Trajectory:
                 },
                 **command_arrays(twists or {}, len(decisions)),
             ),
+            movers=poses,
             version=__version__,
         )
 
     def csv(self, group: Literal["ticks", "decisions"], *, units: bool = False) -> str:
         """Return the ticks or the decisions as CSV (docs/record.md); see ``columns.csv_of``."""
-        columns = TICKS if group == "ticks" else self.decision_columns
-        return csv_of(columns, vars(getattr(self, group)), units=units)
+        told = TICKS if group == "ticks" else self.decision_columns
+        return csv_of(told, vars(getattr(self, group)), units=units)
 
     @cached_property
     def via_passed(self) -> NDArray[np.int64]:
@@ -248,13 +256,12 @@ class Trajectory:
         Raises:
             UserError: If the file cannot be written.
         """
-        collision = None if self.collision is None else vars(self.collision)
         meta = {
             "format": FORMAT,
             "version": self.version,
             "outcome": self.outcome,
             "physics_steps": self.physics_steps,
-            "collision": collision,
+            "collision": None if self.collision is None else vars(self.collision),
             "scenario": self.scenario.model_dump(mode="json"),
         }
         arrays: dict[str, Any] = {"meta": np.array(json.dumps(meta)), **self._arrays()}
@@ -289,15 +296,11 @@ class Trajectory:
             columns = _columns_in(head.scenario.planner, arrays)
             decisions = Decisions(**check_arrays("decisions", columns, arrays))
             check_order(ticks.time, decisions.tick)
+            movers = checked_poses(arrays.get("movers.poses"), head.scenario, ticks.time.size)
             if head.collision is not None:
                 check_collision(head.collision, head.scenario)
         except ValidationError as error:
-            if names := " and ".join(unknown_names(error)):
-                missing = f"made with {names}, not known here"
-                raise UserError(f"{path}: {missing}; --plugin FILE adds it") from error
-            first = error.errors(include_url=False)[0]
-            where = ".".join(str(part) for part in first["loc"])
-            raise UserError(f"{path}: damaged record: {where}: {first['msg']}") from error
+            raise UserError(f"{path}: {mistake_in_record(error)}") from error
         except ValueError as error:
             raise UserError(f"{path}: damaged record: {error}") from error
         return cls(
@@ -307,16 +310,18 @@ class Trajectory:
             collision=head.collision,
             ticks=ticks,
             decisions=decisions,
+            movers=movers,
             version=head.version,
         )
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
-        return {
+        arrays = {
             f"{group}.{name}": array
             for group in ("ticks", "decisions")
             for name, array in vars(getattr(self, group)).items()
             if array is not None  # what no planner but those that answer with twists has
         }
+        return {**arrays, "movers.poses": self.movers} if self.movers.size else arrays
 
 
 def _columns_in(planner: PlannerSettings, arrays: Mapping[str, Any]) -> Columns:

@@ -2,8 +2,8 @@
 
     fuzzyq validate gate.yaml --plugin examples/extend/motion.py
 
-In the scenario file, on an obstacle: ``motion: {kind: swing, angle: 0.0}``. The physics does not
-move obstacles yet: a scenario whose obstacles would move is refused, with the reason.
+In the scenario file, on an obstacle: ``motion: {kind: swing, angle: 0.5}``. Faster than 3 m/s no
+obstacle may be.
 """
 
 from __future__ import annotations

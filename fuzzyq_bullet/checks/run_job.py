@@ -16,8 +16,10 @@ import numpy as np
 from fuzzyq_bullet.checks.verdict import Job, Touch, Verdict, explanation, replay_command
 from fuzzyq_bullet.early_warnings import NO_WAY, early_warnings
 from fuzzyq_bullet.errors import PlannerError, UserError
+from fuzzyq_bullet.fault import speeds_in_words
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.metrics import Result, has_way, name_of, result_of, touch_in_words
+from fuzzyq_bullet.moving import nearest_to
 from fuzzyq_bullet.planning.registry import settings_for
 from fuzzyq_bullet.scenario import (
     Scenario,
@@ -129,7 +131,8 @@ def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
     if expect.outcome == "goal" != result.outcome and not has_way(trajectory.scenario):
         why.insert(0, NO_WAY)  # before what came of it
     if touch is not None:
-        why.append(in_words(touch, verdict.file))
+        speeds = speeds_in_words(trajectory) if touch.distance_m <= 0 else ""
+        why.append(in_words(touch, verdict.file) + (f"; {speeds}" if speeds else ""))
     elif result.outcome in ("timeout", "stuck"):
         why.append(whereabouts(trajectory, result))
     line = touch.line if touch is not None else source.line_of("expect", "goal", "name")
@@ -212,13 +215,13 @@ def touched(trajectory: Trajectory, source: Source) -> Touch | None:
 def nearest(trajectory: Trajectory, source: Source) -> Touch:
     """Return what the robot came nearest to."""
     scenario, ticks = trajectory.scenario, trajectory.ticks
-    field = Field.of(scenario.obstacles, scenario.arena)
     i = int(np.argmin(ticks.clearance))
     x, y = ticks.position[i].tolist()
     if scenario.drive == "kinematic" and i:  # somewhere on the way to that tick
+        field = Field.of(scenario.standing, scenario.arena)
         _, places = field.clearance_along(ticks.position[i - 1], ticks.position[i])
         x, y = places[0].tolist()
-    closest, _ = field.nearest((x, y))
+    closest, _ = nearest_to(scenario, (x, y), trajectory.movers[i])
     return Touch(
         what=name_of(scenario, closest, source.listed),
         obstacle=closest,

@@ -22,7 +22,8 @@ def export(
     ],
     *,
     csv: Annotated[
-        bool, typer.Option("--csv", help="NAME-ticks.csv and NAME-decisions.csv.")
+        bool,
+        typer.Option("--csv", help="NAME-ticks.csv, NAME-decisions.csv; NAME-movers.csv if any."),
     ] = False,
     mcap: Annotated[
         bool, typer.Option("--mcap", help="NAME.mcap, for Foxglove (extra mcap).")
@@ -36,9 +37,10 @@ def export(
 ) -> None:
     """Write a record as CSV, as MCAP, or both.
 
-    CSV: what the robot did at every tick, and every decision; the unit of a column stands in
-    brackets in its heading. MCAP: scene, robot, detection lines, ticks, decisions and events over
-    simulated time, to be played in Foxglove. What all of it means: docs/record.md.
+    CSV: what the robot did at every tick, every decision, and where moving obstacles were, if
+    there are any; the unit of a column stands in brackets in its heading. MCAP: scene, robot,
+    detection lines, ticks, decisions and events over simulated time, to be played in Foxglove.
+    What all of it means: docs/record.md.
 
     Raises:
         UserError: If no form is asked for, its extra is missing, the record cannot be read, or a
@@ -47,17 +49,22 @@ def export(
     if not (csv or mcap):
         raise UserError("nothing to export: --csv or --mcap says in which form")
     from fuzzyq_bullet.files import refuse_inputs, writable_files, written_beside
+    from fuzzyq_bullet.moving import movers_csv
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run
     from fuzzyq_bullet.trajectory import Trajectory
 
     record = Trajectory.load(trajectory)
+    has_movers = csv and bool(record.movers.size)
     name, folder = trajectory.stem, out or trajectory.parent
-    names = [f"{name}-{group}.csv" for group in GROUPS if csv] + [f"{name}.mcap"] * mcap
+    names = [f"{name}-{group}.csv" for group in GROUPS if csv]
+    names += [f"{name}-movers.csv"] * has_movers + [f"{name}.mcap"] * mcap
     paths = writable_files(folder, names)
     refuse_inputs(paths, [trajectory, *plugin_inputs(plugin or [])])
     if not replace and not folder.samefile(trajectory.parent):
         refuse_other_run(folder / f"{name}.npz", paths, record.scenario)
     contents = [record.csv(group, units=True).encode() for group in GROUPS if csv]
+    if has_movers:
+        contents.append(movers_csv(record, units=True).encode())
     if mcap:
         contents.append(_mcap(record))
     for path, content in zip(paths, contents, strict=True):

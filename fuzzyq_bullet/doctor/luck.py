@@ -47,7 +47,7 @@ def examine_luck(scenario: Scenario, listed: int) -> Iterator[Finding]:
         listed: How many of its obstacles, the first ones, are in the scenario file.
     """
     width = 2.0 * scenario.robot.radius
-    if len(Field.of(scenario.obstacles).discs) > MOST_ROUND:
+    if len(Field.of(scenario.standing).discs) > MOST_ROUND:
         yield Finding("limit", ("obstacles",), "gaps: too many obstacles to look at", wrong=False)
         return
     gaps = [gap for gap in gaps_of(scenario) if abs(gap.width - width) <= LUCK]
@@ -79,18 +79,21 @@ def examine_luck(scenario: Scenario, listed: int) -> Iterator[Finding]:
 
 def gaps_of(scenario: Scenario) -> Iterator[Gap]:
     """Yield the gaps no wider than the robot and ``LUCK``, that nothing else stands in."""
-    every = Field.of(scenario.obstacles, scenario.arena)
+    moving = set(scenario.movers)
+    every = Field.of(scenario.standing, scenario.arena)
     most = 2.0 * scenario.robot.radius + LUCK
     fields = [Field.of([item]) for item in scenario.obstacles]
     points = [item.corners() for item in scenario.obstacles]
     best: dict[tuple[int, int], tuple[float, Floats, float, int]] = {}
     apart = Field.of(scenario.obstacles)
     for i, (corners, radius) in enumerate(points):
+        if i in moving:
+            continue
         for corner in corners:
             widths = apart.distances(corner) - radius
             for j in np.flatnonzero((widths > 0.0) & (widths <= most)).tolist():
                 key = (min(i, j), max(i, j))
-                if j != i and widths[j] < best.get(key, (np.inf,))[0]:
+                if j != i and j not in moving and widths[j] < best.get(key, (np.inf,))[0]:
                     best[key] = (float(widths[j]), corner, radius, j)
             wall = _to_wall(corner, scenario) - radius
             if 0.0 < wall <= most and wall < best.get((i, WALL), (np.inf,))[0]:

@@ -15,6 +15,7 @@ from fuzzyq_bullet.problems import Loc
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
+from fuzzyq_bullet.shapes.motion import STILL
 
 TOLERANCE = 0.005
 """Surfaces that lie no farther apart than this are one (m); faces may lie 1 mm outside."""
@@ -40,7 +41,8 @@ def examine_sight(scenario: Scenario, listed: int) -> Iterator[Finding]:
         bare = scenario.arena.model_copy(update={"walls": False})
         for i, obstacle in enumerate(scenario.obstacles[:MOST]):
             loc: Loc = ("obstacles", i) if i < listed else ("random",)
-            with Inspection([obstacle], bare, engine=engine, model=scenario.robot.spec) as world:
+            alone = obstacle.model_copy(update={"motion": STILL})
+            with Inspection([alone], bare, engine=engine, model=scenario.robot.spec) as world:
                 starts, ends = _rays_at(obstacle)
                 if told := _differs(world, starts, ends) or _touches(world, obstacle):
                     drawn = "" if i < listed else f" (drawn as number {i})"

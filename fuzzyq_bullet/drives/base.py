@@ -8,6 +8,7 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 from fuzzyq_bullet.drives.disturbances import Localiser, stream
+from fuzzyq_bullet.physics.movers import Floats
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Motion, Observation
@@ -31,6 +32,7 @@ class Driver(ABC):
 
     Attributes:
         ticks: Its state at every tick so far; the first is the start.
+        poses: Where the moving obstacles were at every tick, shape (M, 3): x, y (m), turn (rad).
         steps: Steps of the simulation so far.
         collision: The first contact, after which the run is over.
         arrived: Whether the robot is where it should be.
@@ -54,11 +56,14 @@ class Driver(ABC):
         self._reading_lasts = 0.0 if told.rate is None else 1.0 / told.rate
         self._read_at, self._read_from = -math.inf, (0.0, 0.0)
         self._field, self._radius = world.field, scenario.robot.radius
+        world.movers.start(scenario.seed)
+        self._movers = world.movers
         self._goal = scenario.goal
         self._targets = scenario.targets
         self._passing = Passing(scenario.via, scenario.start.position)
         self._motion = motion
         self.ticks: list[RobotState] = []
+        self.poses: list[Floats] = []
         self.steps = 0
         self.collision: Collision | None = None
         self.arrived = False
@@ -86,6 +91,11 @@ class Driver(ABC):
             motion=self._motion,
             unit=self._radius,
         )
+
+    def _note(self, state: RobotState) -> None:
+        """Keep the state of the robot, and of all that moves, at a tick."""
+        self.ticks.append(state)
+        self.poses.append(self._movers.poses())
 
     @abstractmethod
     def advance(self, decision: Decision) -> None:

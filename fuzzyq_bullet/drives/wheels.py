@@ -180,16 +180,15 @@ class WheelsDriver(Driver):
 
     def _collision(self, contact: Contact) -> Collision:
         x, y, _ = contact.point
-        wall = contact.body == self._world.walls
         return Collision(
             time=self.steps * TIME_STEP,
             point=(x, y),
-            obstacle=-1 if wall else int(self._field.distances((x, y)).argmin()),
+            obstacle=self._world.touched(contact),
             normal_force=contact.force,
         )
 
     def _record(self) -> None:
-        self.ticks.append(self._world.robot.state(self.steps * TIME_STEP))
+        self._note(self._world.robot.state(self.steps * TIME_STEP))
 
 
 def _uncertainty(scenario: Scenario) -> float:

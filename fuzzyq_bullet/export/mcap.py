@@ -23,6 +23,7 @@ from foxglove.messages import Log, LogLevel
 
 from fuzzyq_bullet.columns import Column, Columns
 from fuzzyq_bullet.export import scene
+from fuzzyq_bullet.moving import headings_of
 from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.trajectory import TICKS, Trajectory
 from fuzzyq_bullet.video.captions import outcome_lines
@@ -69,6 +70,12 @@ def _log_all(trajectory: Trajectory, context: Context) -> None:
     )
     world.log(scene.world_entities(trajectory.scenario), log_time=start)
     robot.log(scene.robot_entities(trajectory.scenario.robot.spec), log_time=start)
+    headings = headings_of(trajectory)
+    if headings.size:
+        movers, arrows = (
+            SceneUpdateChannel(topic, context=context) for topic in ("/movers", "/movers_headings")
+        )
+        movers.log(scene.mover_entities(trajectory.scenario), log_time=start)
     path = PosesInFrameChannel("/path", context=context)
     path.log(scene.path_poses(ticks), log_time=start)
     frame = FrameTransformsChannel("/tf", context=context)
@@ -84,8 +91,12 @@ def _log_all(trajectory: Trajectory, context: Context) -> None:
     index = 0
     for tick, row in enumerate(state_rows):
         time = _nanoseconds(row["time"])
-        pose = (tuple(ticks.position[tick].tolist()), float(ticks.heading[tick]))
-        frame.log(scene.robot_frame(time, *pose), log_time=time)
+        frame.log(scene.frames(time, _poses(trajectory, tick)), log_time=time)
+        if headings.size:
+            marks = scene.mover_marks(
+                trajectory.scenario, trajectory.movers[tick], headings[tick].tolist(), time
+            )
+            arrows.log(marks, log_time=time)
         states.log(row, log_time=time)
         while index < len(at) and at[index] == tick:
             decided.log(next(decision_rows), log_time=time)
@@ -95,6 +106,15 @@ def _log_all(trajectory: Trajectory, context: Context) -> None:
         for name, level, text in events.get(tick, ()):
             entry = Log(timestamp=scene.stamp(time), level=level, message=text, name=name)
             log.log(entry, log_time=time)
+
+
+def _poses(trajectory: Trajectory, tick: int) -> dict[str, tuple[float, float, float]]:
+    """Return the poses of the frames of the robot and of all that moves."""
+    x, y = trajectory.ticks.position[tick].tolist()
+    told = {scene.ROBOT: (x, y, float(trajectory.ticks.heading[tick]))}
+    for index, pose in zip(trajectory.scenario.movers, trajectory.movers[tick], strict=False):
+        told[scene.mover_frame(index)] = tuple(pose.tolist())
+    return told
 
 
 def _events(trajectory: Trajectory) -> dict[int, list[tuple[str, LogLevel, str]]]:

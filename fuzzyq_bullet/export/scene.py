@@ -33,6 +33,7 @@ from foxglove.messages import (
     Vector3,
 )
 
+from fuzzyq_bullet.geometry import Floats
 from fuzzyq_bullet.physics.camera import Mesh
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT
 from fuzzyq_bullet.robots import RobotModel
@@ -58,7 +59,7 @@ def stamp(time: int) -> Timestamp:
 
 def world_entities(scenario: Scenario) -> SceneUpdate:
     """Return all that stands still: each obstacle, the walls, via points, the goal."""
-    walls = meshes.walls_of(scenario, meshes.EVERYWHERE)
+    walls, moving = meshes.walls_of(scenario, meshes.EVERYWHERE), set(scenario.movers)
     goal = [meshes.goal_disc(scenario), *meshes.heading_mark(scenario)]
     entities = [_entity("goal", solids=goal)]
     for index, via in enumerate(scenario.via):
@@ -70,6 +71,8 @@ def world_entities(scenario: Scenario) -> SceneUpdate:
         wall = meshes.prisms(walls, 0.0, WALL_HEIGHT, style.WALL)
         entities.append(_entity("walls", solids=[wall]))
     for index, obstacle in enumerate(scenario.obstacles):
+        if index in moving:
+            continue
         solid = meshes.prisms(obstacle.pieces(), 0.0, OBSTACLE_HEIGHT, style.OBSTACLE)
         about = obstacle.model_dump(mode="json", exclude={"motion"})
         entities.append(_entity(f"obstacles[{index}]", solids=[solid], about=about))
@@ -86,6 +89,44 @@ def _number_over(position: tuple[float, float], number: int) -> TextPrimitive:
         color=_colour(style.GOAL),
         text=str(number),
     )
+
+
+def mover_entities(scenario: Scenario) -> SceneUpdate:
+    """Return all that moves, each in a frame of its own."""
+    entities = []
+    for index in scenario.movers:
+        obstacle = scenario.obstacles[index]
+        pieces = [piece - obstacle.position for piece in obstacle.pieces()]
+        solids = [meshes.prisms(pieces, 0.0, OBSTACLE_HEIGHT, style.MOVER)]
+        about = obstacle.model_dump(mode="json", exclude={"motion"})
+        frame: dict[str, Any] = {"frame_id": mover_frame(index), "frame_locked": True}
+        entities.append(_entity(f"obstacles[{index}]", solids=solids, about=about, **frame))
+    return SceneUpdate(entities=entities)
+
+
+def mover_frame(index: int) -> str:
+    """Return what the frame of a moving obstacle is called."""
+    return f"obstacle_{index}"
+
+
+def mover_marks(scenario: Scenario, poses: Floats, headings: list[float], time: int) -> SceneUpdate:
+    """Return an arrow on each moving obstacle that shows where it goes.
+
+    Args:
+        scenario: The scenario.
+        poses: Where they are, shape (M, 3).
+        headings: In which direction each goes (rad); NaN for none.
+        time: When (ns).
+    """
+    top, arrows = OBSTACLE_HEIGHT + 0.005, []
+    for index, (x, y, _), heading in zip(scenario.movers, poses.tolist(), headings, strict=True):
+        if math.isnan(heading):
+            continue
+        obstacle = scenario.obstacles[index]
+        nose = arrow((x, y), heading, min(obstacle.extent(), obstacle.thickness()))
+        solid = meshes.prisms([nose], OBSTACLE_HEIGHT, top, style.CARD)
+        arrows.append(_entity(f"heading of obstacles[{index}]", time, solids=[solid]))
+    return _instead(arrows, time)
 
 
 def robot_entities(model: RobotModel) -> SceneUpdate:
@@ -127,16 +168,19 @@ def path_poses(ticks: Ticks) -> PosesInFrame:
     return PosesInFrame(timestamp=stamp(0), frame_id=WORLD, poses=poses)
 
 
-def robot_frame(time: int, position: tuple[float, float], heading: float) -> FrameTransforms:
-    """Return where the robot's frame is at a time (ns): its position (m) and heading (rad)."""
-    transform = FrameTransform(
-        timestamp=stamp(time),
-        parent_frame_id=WORLD,
-        child_frame_id=ROBOT,
-        translation=Vector3(x=position[0], y=position[1], z=0.0),
-        rotation=_turned(heading),
-    )
-    return FrameTransforms(transforms=[transform])
+def frames(time: int, poses: Mapping[str, tuple[float, float, float]]) -> FrameTransforms:
+    """Return where frames are at a time (ns): by name the position (m, m) and turn (rad)."""
+    transforms = [
+        FrameTransform(
+            timestamp=stamp(time),
+            parent_frame_id=WORLD,
+            child_frame_id=name,
+            translation=Vector3(x=x, y=y, z=0.0),
+            rotation=_turned(turn),
+        )
+        for name, (x, y, turn) in poses.items()
+    ]
+    return FrameTransforms(transforms=transforms)
 
 
 def detection_lines(trajectory: Trajectory, index: int, time: int) -> SceneUpdate:
@@ -222,14 +266,17 @@ def _entity(
     about: Mapping[str, Any] | None = None,
     **primitives: Any,
 ) -> SceneEntity:
-    """Return something in the world that stays until it is deleted."""
+    """Return something that stays until it is deleted; in the world unless ``frame_id`` differs."""
     return SceneEntity(
         timestamp=stamp(time),
-        frame_id=WORLD,
         id=name,
         lifetime=Duration(0),
         metadata=[KeyValuePair(key=key, value=str(value)) for key, value in (about or {}).items()],
-        **{"triangles": [_triangles(solid) for solid in solids], **primitives},
+        **{
+            "frame_id": WORLD,
+            "triangles": [_triangles(solid) for solid in solids],
+            **primitives,
+        },
     )
 
 

@@ -18,6 +18,7 @@ from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video.footprints import arrow, pointer
+from fuzzyq_bullet.video.movers import DrawnMovers
 
 
 class Stroke(NamedTuple):
@@ -42,6 +43,7 @@ LEGEND = (
     TEMPORARY := "temporary goal of a breakout",
     LEAVES := "leaves the obstacle",
     LAST := "robot at the end",
+    MOVES := "moving obstacle at the end, and its way",
     HIT := "collision",
 )
 """All that a panel may show, in the order of the legend."""
@@ -54,6 +56,7 @@ _CORNERS = 60
 """Of a polygon that stands for a circle."""
 _OBSTACLE = "#B9BEC6"
 _GOAL_FACE = "#40B696"
+_MOVER, _MOVER_EDGE = "#D9C7A3", "#8A7443"
 
 
 def _look(marker: str, face: str, rim: str, size: float) -> _Look:
@@ -66,6 +69,7 @@ _GOAL_LOOK = _look("o", _GOAL_FACE, GREEN, 9)
 _END_LOOK = _look("o", INK, INK, 8)
 _TARGET_LOOK = _look("D", "white", PURPLE, 6.5)
 _LEAVE_LOOK = _look("s", "white", PATH["routine"].colour, 5)
+_MOVER_LOOK = _look("o", _MOVER, _MOVER_EDGE, 9)
 _HIT_LOOK = _look("X", RED, "white", 11)
 
 
@@ -82,6 +86,7 @@ def draw_run(axes: Axes, trajectory: Trajectory, *, targets: bool = True) -> dic
     """
     shown: _Shown = {}
     _world(axes, trajectory, shown)
+    _movers(axes, trajectory, shown)
     _path(axes, trajectory, shown)
     _escapes(axes, trajectory, shown, targets)
     _end(axes, trajectory, shown)
@@ -96,6 +101,8 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     axes.set_aspect("equal")
     hit = trajectory.collision
     for index, obstacle in enumerate(scenario.obstacles):
+        if index in scenario.movers:
+            continue
         struck = hit is not None and hit.obstacle == index
         axes.add_patch(_shape(obstacle, struck))
     for side in axes.spines.values():
@@ -116,6 +123,21 @@ def _world(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
     axes.add_patch(Circle(goal.position, goal.radius, fc="none", ec=GREEN, lw=2.0, zorder=8))
     shown["start"] = _sample(_START_LOOK)
     shown["goal"] = _sample(_GOAL_LOOK)
+
+
+def _movers(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
+    """Draw what moves where it was in the end, with the way it went and an arrow on it."""
+    last, hit = len(trajectory.ticks.time) - 1, trajectory.collision
+    drawn = DrawnMovers(trajectory, lambda _: _CORNERS).at(float(trajectory.ticks.time[-1]), last)
+    for k, one in enumerate(drawn):
+        way = trajectory.movers[:, k, :2]
+        axes.plot(*way.T, color=_MOVER_EDGE, lw=1.0, ls=(0, (4, 2)), zorder=2.2)
+        struck = hit is not None and hit.obstacle == one.number
+        look: _Look = {"fc": _MOVER, "ec": RED if struck else _MOVER_EDGE, "zorder": 2.6}
+        axes.add_patch(Polygon(one.outline, lw=2.2 if struck else 1.0, **look))
+        if one.nose is not None:
+            axes.add_patch(Polygon(one.nose, fc="white", ec="none", zorder=2.7))
+        shown[MOVES] = _sample(_MOVER_LOOK)
 
 
 def _body(scenario: Scenario, x: float, y: float, heading: float) -> Patch:

@@ -51,7 +51,7 @@ class _Question(NamedTuple):
         if not (math.isfinite(radius) and radius > 2 * GRAZE):
             raise ValueError(f"the radius must be positive and finite, got {radius}")
         discs = tuple((one.position, one.radius) for one in scenario.targets)
-        return cls(scenario.obstacles, scenario.arena, scenario.start.position, discs, radius)
+        return cls(scenario.standing, scenario.arena, scenario.start.position, discs, radius)
 
     def space(self) -> ConfigurationSpace:
         return ConfigurationSpace(Field.of(self.obstacles, self.arena), self.radius)

@@ -35,7 +35,7 @@ class DistanceField:
         self._low = left, bottom
         grid = OccupancyGrid.over((left, bottom), (right, top), CELL)
         points = grid.points()
-        field = Field.of(scenario.obstacles, scenario.arena)
+        field = Field.of(scenario.standing, scenario.arena)
         grid.free[:] = (field.clearance(points.reshape(-1, 2)) >= room).reshape(grid.free.shape)
         at_goal = np.hypot(*np.moveaxis(points - scenario.goal.position, 2, 0))
         source = np.unravel_index(np.where(grid.free, at_goal, np.inf).argmin(), at_goal.shape)

@@ -29,7 +29,7 @@ def has_open_space(scenario: Scenario, radius: float | None = None) -> bool:
     import shapely  # only who has very many obstacles waits for it to load
 
     radius = scenario.robot.radius if radius is None else radius
-    told = [one.corners() for one in scenario.obstacles]
+    told = [one.corners() for one in scenario.standing]
     bare = [
         shapely.Polygon(points) if len(points) > 2 else shapely.MultiPoint(points).convex_hull
         for points, _ in told

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyq_bullet.fuzzy import definition_of
+from fuzzyq_bullet.moving import headings_of
 from fuzzyq_bullet.planning.controllers import controller_of
 from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.rules_turn import asked, has_rules
@@ -62,6 +63,7 @@ def run_data(trajectory: Trajectory) -> dict[str, Any]:
         "controller": controller,
         "rule_weights": None if controller is None else _numbers(rule_weights(trajectory), 3),
         "ticks": _ticks(trajectory),
+        "movers": _movers(trajectory),
         **_decisions(trajectory),
     }
 
@@ -69,7 +71,7 @@ def run_data(trajectory: Trajectory) -> dict[str, Any]:
 def _field(trajectory: Trajectory) -> dict[str, Any]:
     """Return what stands there; an obstacle is the polygon of its corners, grown by a radius."""
     scenario = trajectory.scenario
-    solids = (obstacle.corners() for obstacle in scenario.obstacles)
+    solids = (obstacle.corners() for obstacle in scenario.standing)
     return {
         "bounds": list(scenario.arena.bounds),
         "walls": scenario.arena.walls,
@@ -89,9 +91,7 @@ def _field(trajectory: Trajectory) -> dict[str, Any]:
 
 def _ticks(trajectory: Trajectory) -> dict[str, Any]:
     ticks = trajectory.ticks
-    kept = np.unique(
-        np.linspace(0, len(ticks.time) - 1, min(len(ticks.time), MOST_TICKS)).round().astype(int)
-    )
+    kept = _kept_ticks(len(ticks.time))
     return {
         "time": _numbers(ticks.time[kept], 3),
         "x": _numbers(ticks.position[kept, 0], 3),
@@ -100,6 +100,33 @@ def _ticks(trajectory: Trajectory) -> dict[str, Any]:
         "speed": _numbers(ticks.speed[kept], 3),
         "clearance": _numbers(ticks.clearance[kept], 3),
     }
+
+
+def _kept_ticks(count: int) -> NDArray[np.int64]:
+    """Return the indices of the ticks that the page gets."""
+    return np.unique(np.linspace(0, count - 1, min(count, MOST_TICKS)).round().astype(np.int64))
+
+
+def _movers(trajectory: Trajectory) -> list[dict[str, Any]]:
+    """Return each moving obstacle about its centre, and where it is at the ticks."""
+    kept, headings = _kept_ticks(len(trajectory.ticks.time)), headings_of(trajectory)
+    told = []
+    for k, index in enumerate(trajectory.scenario.movers if trajectory.movers.size else ()):
+        shape = trajectory.scenario.obstacles[index]
+        points, radius = shape.corners()
+        x, y, turn = trajectory.movers[kept, k].T
+        told.append(
+            {
+                "corners": _numbers(points - shape.position, 3),
+                "radius": _number(radius),
+                "size": _number(min(shape.extent(), shape.thickness())),
+                "x": _numbers(x, 3),
+                "y": _numbers(y, 3),
+                "turn": _numbers(np.unwrap(turn), 3),
+                "heading": _numbers(headings[kept, k], 3),
+            }
+        )
+    return told
 
 
 def _decisions(trajectory: Trajectory) -> dict[str, Any]:

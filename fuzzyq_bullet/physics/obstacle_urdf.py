@@ -1,4 +1,4 @@
-"""Everything that never moves, as URDF text: all obstacles in one body, all walls in another.
+"""Obstacles and walls as URDF text: all that stand in one body, each that moves in its own.
 
 One link with many ``<collision>`` elements is the fastest static world PyBullet has: a step costs
 nearly the same at 1000 obstacles as at none.
@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzyq_bullet.quantities import Point
 from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
 
@@ -27,15 +28,24 @@ def obstacles_urdf(obstacles: Sequence[Shape]) -> tuple[str, dict[str, str]]:
     Returns:
         The text, and the mesh files beside it that it names, text by name.
     """
+    return _obstacles_urdf([(one, one.position) for one in obstacles])
+
+
+def mover_urdf(obstacle: Shape) -> tuple[str, dict[str, str]]:
+    """Return the same for one obstacle, about its centre."""
+    return _obstacles_urdf([(obstacle, (0.0, 0.0))])
+
+
+def _obstacles_urdf(places: Sequence[tuple[Shape, Point]]) -> tuple[str, dict[str, str]]:
     shapes: list[str] = []
     prisms: list[NDArray[np.float64]] = []
-    for obstacle in obstacles:
+    for obstacle, centre in places:
         for solid in obstacle.collisions(OBSTACLE_HEIGHT):
             if solid.prism is None:
-                place = (*obstacle.position, OBSTACLE_HEIGHT, solid.yaw)
+                place = (*centre, OBSTACLE_HEIGHT, solid.yaw)
                 shapes.append(_shape(*place, solid.geometry))
             else:
-                prisms.append(np.add(solid.prism, (*obstacle.position, 0.0)))
+                prisms.append(np.add(solid.prism, (*centre, 0.0)))
     if prisms:
         mesh = f'<mesh filename="{_PRISMS}"/>'
         shapes.append(_shape(0.0, 0.0, OBSTACLE_HEIGHT, 0.0, mesh))

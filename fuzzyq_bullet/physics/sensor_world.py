@@ -19,8 +19,10 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
+from fuzzyq_bullet.physics.movers import Movers
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel
+from fuzzyq_bullet.scenario.movers import moves
 from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
 
@@ -67,7 +69,9 @@ class SensorWorld:
     Attributes:
         obstacles: What it was built of.
         arena: Likewise.
-        field: The exact geometry of all obstacles and walls.
+        field: The exact geometry of all obstacles that stand still, and of the walls.
+        standing: The index of each obstacle of the field among all obstacles.
+        movers: All obstacles that move.
     """
 
     def __init__(
@@ -80,12 +84,16 @@ class SensorWorld:
     ) -> None:
         self.obstacles, self.arena = tuple(obstacles), arena
         self.model = model
-        self.field = Field.of(obstacles, arena)
+        self.standing = tuple(i for i, one in enumerate(obstacles) if not moves(one))
+        still = [obstacles[i] for i in self.standing]
+        self.field = Field.of(still, arena)
+        self.movers = Movers(self.obstacles, arena)
         self._owns_engine = engine is None
         self.engine = engine or Engine()
         self.engine.reset()
         self._api = self.engine.api
-        self._build(obstacles, arena)
+        self._build(still, arena)
+        self.movers.start(0)
 
     def cast(self, starts: Sequence[Point], ends: Sequence[Point]) -> list[float]:
         """Cast rays against the faces of everything; level, at the height of the robot's sensor.
@@ -98,6 +106,7 @@ class SensorWorld:
             The part of each ray that is free, in [0, 1]; 1 where it meets nothing.
         """
         told: list[float] = []
+        self.movers.show()
         for k in range(0, len(starts), MOST_RAYS):
             hits = self._api.rayTestBatch(
                 starts[k : k + MOST_RAYS],
@@ -123,6 +132,14 @@ class SensorWorld:
         """Put all that is to be there into the engine."""
         for mesh in meshes(obstacles, arena):
             self._group(self._build_faces(*mesh), -1, Group.FACES, Group.RAYS)
+        self.movers.build(self.engine, self.model.sensor_height)
+        for one in self.movers.members:
+            one.faces = self._build_faces(*_mesh([one.shape.faces() - one.shape.position]))
+            self._group(one.faces, -1, Group.FACES, Group.RAYS)
+
+    def index_of(self, nearest: int) -> int:
+        """Return which obstacle the field means by a number; a wall stays a wall."""
+        return nearest if nearest < 0 else self.standing[nearest]
 
     def _group(self, body: int, link: int, group: Group, mask: Group) -> None:
         """Say what a link of a body belongs to, and what it meets."""

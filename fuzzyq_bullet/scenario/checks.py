@@ -18,9 +18,10 @@ from fuzzyq_bullet.problems import MAX_SHOWN, Loc, key_path
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
+from fuzzyq_bullet.scenario.motion_checks import motion_conflicts
+from fuzzyq_bullet.scenario.movers import moves
 from fuzzyq_bullet.scenario.places import Arena, Bounds, Goal, Start, Via
 from fuzzyq_bullet.shapes import Obstacle
-from fuzzyq_bullet.shapes.motion import STILL
 
 Conflict: TypeAlias = tuple[Loc, str]
 
@@ -32,15 +33,15 @@ def find_conflicts(scenario: Scenario) -> list[Conflict]:
     of the goal or of a via point, touching a wall or an obstacle; a start within the first via
     point, or within the goal if there is none (a run of no steps, with no shortest path to measure
     it by); a via point around the centre of the one before it; an obstacle wholly outside the
-    walls; obstacles to be drawn that are too large for the arena or too many; an obstacle that
-    moves; a sensor that sees less far than the longest step of the controller. Obstacles may
-    overlap each other and poke through walls.
+    walls; obstacles to be drawn that are too large for the arena or too many; a motion that begins
+    inside something, or is too fast; a sensor that sees less far than the longest step of the
+    controller. Obstacles may overlap each other and poke through walls.
     """
     return [
         *_places(scenario),
         *_range(scenario),
         *_obstacles(scenario),
-        *_motions(scenario),
+        *motion_conflicts(scenario),
         *_random(scenario),
         *_noise(scenario),
     ]
@@ -120,6 +121,8 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
         x, y = place.position
         gaps = field.distances(place.position)
         for i in np.flatnonzero(gaps <= radius + TOUCH).tolist():
+            if moves(scenario.obstacles[i]):  # it may go there, and begin elsewhere
+                continue
             where = f"{-gaps[i]:.3g} m inside it" if gaps[i] < 0 else f"{gaps[i]:.3g} m from it"
             message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; "
             message += _remedy(gaps[i], radius)
@@ -148,16 +151,6 @@ def range_conflict(scenario: Scenario) -> str | None:
         f"must be at least {least:g} m, the longest step of a robot of radius "
         f"{scenario.robot.radius:g} m, got {scenario.sensor_range:g}"
     )
-
-
-def _motions(scenario: Scenario) -> list[Conflict]:
-    """Return the obstacles that would move: the physics cannot move them yet."""
-    times = np.linspace(0.0, scenario.limits.time, 50).tolist()
-    return [
-        (("obstacles", i, "motion"), f"moves, and obstacles cannot move yet; allowed: {STILL.kind}")
-        for i, item in enumerate(scenario.obstacles)
-        if item.motion is not STILL and any(map(any, map(item.motion.pose, times)))
-    ]
 
 
 def _random(scenario: Scenario) -> list[Conflict]:

@@ -34,6 +34,11 @@ class Expect(Model):
     max_time: Annotated[Number, Field(gt=0.0)] | None = Field(
         default=None, description="Longest simulated time (s)."
     )
+    contact: Literal["none", "not-at-fault"] = Field(
+        default="none",
+        description="Which contacts end a run well: none, or those that the robot is not at fault "
+        "for (passive safety).",
+    )
     pass_rate: Annotated[Number, Field(gt=0.0, le=1.0)] = Field(
         default=1.0,
         description="Least share of the runs that must meet all this, with check --repeat.",
@@ -71,6 +76,9 @@ class _Expectation:
 
 _OF_GROUPS = ("pass_rate",)
 """What is expected of several runs together; one run neither meets nor misses it."""
+_NO_FIGURES = (*_OF_GROUPS, "contact")
+_EXCUSED = ("outcome", "min_clearance")
+"""What a contact that the robot is not at fault for need not meet if such contacts are allowed."""
 _expectations: dict[str, _Expectation] = {}
 _model: type[Expect] = Expect
 
@@ -117,7 +125,7 @@ def register_expectation(
         ValueError: If the name is taken, or can be no key.
     """
     global _model
-    taken = name in _expectations or name in _OF_GROUPS
+    taken = name in _expectations or name in _NO_FIGURES
     if taken or (name not in Expect.model_fields and hasattr(Expect, name)):
         raise ValueError(f"an expectation named {name!r} is registered already")
     if not name.isidentifier() or name.startswith("_"):
@@ -165,8 +173,9 @@ def unmet_expectations(expect: Expect, result: Any) -> list[str]:
         UserError: If an expectation of the user's own fails itself.
     """
     lines = []
+    excused = expect.contact == "not-at-fault" and result.at_fault is False
     for name, limit in expect:
-        if limit is None or name in _OF_GROUPS:
+        if limit is None or name in _NO_FIGURES or (excused and name in _EXCUSED):
             continue
         try:
             lines.append(_expectations[name].unmet(limit, result))

@@ -32,6 +32,7 @@ from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import MAX_WORDED, problems_of
 from fuzzyq_bullet.scenario.robot import Robot, with_robot_in
+from fuzzyq_bullet.shapes.trace import with_trace_in
 from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
 from fuzzyq_bullet.yaml_tree import Node, read_tree
 
@@ -94,6 +95,7 @@ def parse_scenario(
         )
     more = 0
     data = with_robot_in(_with_rules_in(tree, folder or Path(), where), folder)
+    data = _with_traces_in(tree, data, folder or Path(), where)
     try:
         scenario = Scenario.model_validate(data)
     except ValidationError as error:
@@ -152,6 +154,28 @@ def _with_rules_in(tree: Node, folder: Path, where: str) -> dict[str, Any]:
         inner = tree.children["planner"]
         raise error.under(f"{where}:{inner.line_of('rules')}: planner.rules") from error
     return {**data, "planner": {**planner, "rules": rules}}
+
+
+def _with_traces_in(tree: Node, data: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+    """Return the data of a scenario with the rows of the traces that its obstacles name.
+
+    Raises:
+        UserError: If such a file cannot be read, or is wrong.
+    """
+    obstacles = data.get("obstacles")
+    if not isinstance(obstacles, list):
+        return data
+    told = []
+    for i, item in enumerate(obstacles):
+        motion = item.get("motion") if isinstance(item, dict) else None
+        try:
+            read = with_trace_in(motion, folder)
+        except UserError as error:
+            inner = tree.children["obstacles"].children[i].children["motion"]
+            place = f"{where}:{inner.line_of('file')}: obstacles[{i}].motion.file"
+            raise error.under(place) from error
+        told.append(item if read is motion else {**item, "motion": read})
+    return {**data, "obstacles": told}
 
 
 def _with_policy_in(scenario: Scenario, folder: Path) -> Scenario:

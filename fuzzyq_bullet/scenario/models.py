@@ -42,10 +42,11 @@ from fuzzyq_bullet.scenario.expectations import (
     expect_model,
 )
 from fuzzyq_bullet.scenario.layouts import AnyLayout
+from fuzzyq_bullet.scenario.movers import movers, standing
 from fuzzyq_bullet.scenario.places import Arena, Goal, Start, Via
 from fuzzyq_bullet.scenario.robot import Robot
 from fuzzyq_bullet.sensors.base import SENSORS, AnySensor, ExactSensor, SensorModel
-from fuzzyq_bullet.shapes import Obstacle
+from fuzzyq_bullet.shapes import Obstacle, Shape
 from fuzzyq_bullet.shapes.motion import STILL
 
 Drive: TypeAlias = Literal["wheels", "kinematic"]
@@ -200,6 +201,16 @@ class Scenario(Model):
         if not self.via:
             told.pop("via", None)
         return told
+
+    @property
+    def standing(self) -> tuple[Shape, ...]:
+        """The obstacles that stand still."""
+        return standing(self.obstacles)
+
+    @property
+    def movers(self) -> tuple[int, ...]:
+        """The indices of the obstacles that move."""
+        return movers(self.obstacles)
 
     @property
     def targets(self) -> tuple[Via | Goal, ...]:

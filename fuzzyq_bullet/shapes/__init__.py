@@ -18,9 +18,20 @@ from fuzzyq_bullet.shapes.base import (
 from fuzzyq_bullet.shapes.cylinder import ROUNDNESS, Cylinder, Cylinders  # isort: skip
 from fuzzyq_bullet.shapes.box import Box, Boxes
 from fuzzyq_bullet.shapes.convex import ConvexPolygons, ConvexShape
-from fuzzyq_bullet.shapes.motion import MOTIONS, Motion, Pose, Still, register_motion
+from fuzzyq_bullet.shapes.motion import (
+    MOTIONS,
+    Course,
+    Motion,
+    Pose,
+    Standing,
+    Still,
+    Surroundings,
+    register_motion,
+)
+from fuzzyq_bullet.shapes.motions import Circle, Patrol, Wander
 from fuzzyq_bullet.shapes.polygon import Polygon
 from fuzzyq_bullet.shapes.polygons import Polygons
+from fuzzyq_bullet.shapes.trace import Trace
 
 __all__ = [
     "GRAZE",
@@ -29,19 +40,26 @@ __all__ = [
     "SHAPES",
     "Box",
     "Boxes",
+    "Circle",
     "Collision",
     "ConvexPolygons",
     "ConvexShape",
+    "Course",
     "Cylinder",
     "Cylinders",
     "Motion",
     "Obstacle",
+    "Patrol",
     "Polygon",
     "Polygons",
     "Pose",
     "Shape",
     "ShapeGroup",
+    "Standing",
     "Still",
+    "Surroundings",
+    "Trace",
+    "Wander",
     "register_motion",
     "register_shape",
     "thinnest",

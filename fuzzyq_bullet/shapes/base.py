@@ -120,7 +120,7 @@ class Shape(Model, ABC):
         cos, sin = math.cos(turn), math.sin(turn)
         px, py = self.position
         at = round(x + cos * px - sin * py, DECIMALS), round(y + sin * px + cos * py, DECIMALS)
-        return self.model_copy(update={"position": at})
+        return self.model_copy(update={"position": at, "motion": self.motion.moved(x, y, turn)})
 
 
 class ShapeGroup(ABC):

@@ -34,7 +34,7 @@ class PositionProblem:
     def __init__(self, scenario: Scenario) -> None:
         self.cells = Cells.over(scenario.arena.size, scenario.robot.radius, scenario.arena.origin)
         self._scenario = scenario
-        self._field = Field.of(scenario.obstacles, scenario.arena)
+        self._field = Field.of(scenario.standing, scenario.arena)
 
     def reset(self, episode: int, /) -> int:
         """Begin an episode; all are the same."""

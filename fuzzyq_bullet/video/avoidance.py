@@ -50,11 +50,11 @@ class Avoidance:
 
     def __init__(self, trajectory: Trajectory) -> None:
         scenario, decisions = trajectory.scenario, trajectory.decisions
-        self._obstacles = scenario.obstacles
+        self._obstacles = scenario.standing
         self._arena = scenario.arena.bounds if scenario.arena.walls else None
-        self._field = Field.of(scenario.obstacles)
-        self._centres = np.array([o.position for o in scenario.obstacles]).reshape(-1, 2)
-        self._extents = np.array([o.extent() for o in scenario.obstacles])
+        self._field = Field.of(self._obstacles)
+        self._centres = np.array([o.position for o in self._obstacles]).reshape(-1, 2)
+        self._extents = np.array([o.extent() for o in self._obstacles])
         self._group: dict[int, int] = {}
         self._members: dict[int, list[int]] = {}
         self.marks: list[Mark] = []

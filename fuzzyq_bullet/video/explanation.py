@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.rules_turn import asked, controller_turns
+from fuzzyq_bullet.video.approach import approaching
 from fuzzyq_bullet.video.timeline import NO_DECISION, sensor_range
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ def reason(trajectory: Trajectory, index: int) -> str:
         return "Waits for its first decision"
     decisions = trajectory.decisions
     mode = MODES[int(decisions.mode[index])]
+    if makes_way := _makes_way(trajectory, index):
+        return makes_way
     if mode != "routine":
         stands = min(float(decisions.step[index]), float(decisions.reach[index])) < _STANDS
         if stands and not math.isfinite(float(decisions.target[index].sum())):
@@ -166,6 +169,16 @@ def _waits(trajectory: Trajectory, index: int, lean: float) -> str:
     if abs(math.remainder(float(decisions.heading[index]) - facing, math.tau)) > _FACING:
         return "No room for a wide turn: turns on the spot"
     return "No room yet to turn so far: slows down" if held else ""
+
+
+def _makes_way(trajectory: Trajectory, index: int) -> str:
+    """Return that the robot waits for what comes, if it does."""
+    decisions, tick = trajectory.decisions, int(trajectory.decisions.tick[index])
+    if min(float(decisions.step[index]), float(decisions.reach[index])) >= _STANDS:
+        return ""
+    coming = approaching(trajectory, tick)
+    moves = abs(float(trajectory.ticks.speed[tick])) > _SLOW
+    return f"{coming}: {'brakes' if moves else 'waits'}" if coming else ""
 
 
 def _leads(lean: float, name: str = "") -> str:

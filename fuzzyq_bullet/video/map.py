@@ -12,6 +12,7 @@ from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.footprints import Floats, arrow
 from fuzzyq_bullet.video.legend import legend, note
 from fuzzyq_bullet.video.marks import began, cross, diamond, left_off, passed, reticle
+from fuzzyq_bullet.video.movers import Drawn, DrawnMovers
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.plan import Plan
 from fuzzyq_bullet.video.style import MAP, Rect
@@ -67,6 +68,7 @@ class Map:
         )
         plan.draw_on(still)
         self._trail = Trail(still, positions, self.spot, unit=unit)
+        self._movers = DrawnMovers(trajectory, plan.corners)
         self._struck = self._outline_struck(trajectory)
         self._avoided: int | None = None
         self._marked = 0
@@ -81,7 +83,8 @@ class Map:
         self, moment: Moment, sensed: Sensed | None, hit: tuple[float, float] | None = None
     ) -> DirtyRegion | None:
         """Return what changed since the last moment drawn; ``hit`` marks a collision (m)."""
-        if not self._steady.moved(moment) and sensed is self._sensed:
+        moved = self._steady.moved(moment) or len(self._movers)
+        if not moved and sensed is self._sensed:
             return None
         self._sensed = sensed
         grown = paint.joined(
@@ -101,6 +104,8 @@ class Map:
                 np.stack([centre, *np.reshape(strokes, (-1, 2))]), radius + 3 * unit, size
             )
         ]
+        movers = self._movers.at(moment.time, moment.tick)
+        parts += [paint.box_around(self.spot(one.outline), 3 * unit, size) for one in movers]
         target = None
         if sensed is not None and (to := self._apart(sensed, sensed.target)) is not None:
             target = self.spot([to])[0]
@@ -116,6 +121,8 @@ class Map:
             return None
 
         image = self._trail.image.crop(box)
+        for one in movers:
+            self._draw_mover(image, box, one)
         for stroke, colour in zip(strokes, style.LINES, strict=False):
             _draw_line(image, box, stroke, colour, unit)
         if target is not None:
@@ -201,7 +208,24 @@ class Map:
         hit = trajectory.collision
         if hit is None or hit.obstacle < 0:
             return np.empty((0, 2))
+        if hit.obstacle in trajectory.scenario.movers:
+            last = len(trajectory.ticks.time) - 1
+            drawn = self._movers.at(float(trajectory.ticks.time[-1]), last)
+            return self.spot(next(one.outline for one in drawn if one.number == hit.obstacle))
         return self._plan.outline(trajectory.scenario.obstacles[hit.obstacle])
+
+    def _draw_mover(self, image: Image.Image, box: paint.Box, one: Drawn) -> None:
+        """Draw an obstacle that moves, with an arrow that shows where it goes."""
+        for points, colour in ((one.outline, style.MOVER), (one.nose, style.GROUND)):
+            if points is not None:
+                _fill(image, box, self.spot(points), colour)
+
+
+def _fill(image: Image.Image, box: paint.Box, outline: Floats, colour: style.Colour) -> None:
+    def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
+        pen.polygon(at(outline), fill=255)
+
+    paint.stamp(image, box, outline, 1.0, colour, draw)
 
 
 def _draw_line(

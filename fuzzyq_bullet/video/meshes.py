@@ -46,13 +46,13 @@ def ground_of(scenario: Scenario, seen: Floats) -> Floats:
 
 
 def obstacles_seen(scenario: Scenario, lens: Lens, seen: Floats) -> list[Floats]:
-    """Return outlines (m) of the obstacles in sight, cut off well outside the picture.
+    """Return outlines (m) of the standing obstacles in sight, cut off well outside the picture.
 
     They are convex; a concave obstacle has several.
     """
     outlines = []
     low, high = seen.min(axis=0), seen.max(axis=0)
-    for obstacle in scenario.obstacles:
+    for obstacle in scenario.standing:
         reach = obstacle.extent()
         x, y = obstacle.position
         if x + reach < low[0] or x - reach > high[0] or y + reach < low[1] or y - reach > high[1]:

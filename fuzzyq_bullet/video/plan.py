@@ -62,8 +62,12 @@ class Plan:
         """Return the outline (pixels) of what is seen of an obstacle, shape (N, 2)."""
         x0, y0, x1, y1 = self._area
         seen = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
-        outline = obstacle.outline(self._fine * corners_for(obstacle.extent() * self.scale))
+        outline = obstacle.outline(self.corners(obstacle))
         return self.spot(clipped(outline, seen))
+
+    def corners(self, obstacle: Shape) -> int:
+        """Return how many corners make something round look so."""
+        return self._fine * corners_for(obstacle.extent() * self.scale)
 
     def draw_on(self, image: Image.Image) -> None:
         """Draw the field on the card."""
@@ -81,7 +85,7 @@ class Plan:
                 pen.line(at(self.spot([(x0, y), (x1, y)])), 255, round(unit * at.factor))
 
         def obstacles(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
-            for obstacle in scenario.obstacles:
+            for obstacle in scenario.standing:
                 x, y = obstacle.position
                 r = obstacle.extent()
                 if x + r > x0 and x - r < x1 and y + r > y0 and y - r < y1:

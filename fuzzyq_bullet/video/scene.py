@@ -17,6 +17,7 @@ from fuzzyq_bullet.video.footprints import pointer
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.shots import SPAN, Shot
+from fuzzyq_bullet.video.solid_movers import DETAIL, SolidMovers, lay_pixels, put_back
 from fuzzyq_bullet.video.still import photograph
 from fuzzyq_bullet.video.style import SCENE, Rect
 from fuzzyq_bullet.video.timeline import Sensed, Steady
@@ -28,11 +29,11 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.video.footprints import Floats
     from fuzzyq_bullet.video.timeline import Moment
 
-DETAIL = 2
-"""How many times larger everything is rendered, to be shrunk to smooth edges."""
 _FILL, _EDGE = 88, 235
 _SHADOW = 1.125
 """How many times larger than the robot its shadow is."""
+_CAST = (0.06, 0.09)
+"""How far the shadow of a moving obstacle lies from it (m)."""
 _SMALLEST = 26.0
 """A robot that covers fewer points than this gets a ring around it."""
 
@@ -90,6 +91,7 @@ class Scene:
         self._stains: list[tuple[style.Colour, paint.Layer]] = []
         self._changed: paint.Box | None = (0, 0, *lens.size)
         self._window: paint.Box | None = None
+        self._movers = SolidMovers(trajectory, lens)
         with ExitStack() as stack:
             self._robot = stack.enter_context(
                 RobotCamera(lens, trajectory.scenario.robot.spec, DETAIL)
@@ -104,7 +106,7 @@ class Scene:
         if shot != self._shot:
             self._cut_to(shot)
         frame = self._camera.window(self.lens, moment)
-        moved = self._steady.moved(moment) or frame != self._window
+        moved = self._steady.moved(moment) or frame != self._window or len(self._movers)
         if not moved and sensed is self._sensed:
             return None
         self._window = frame
@@ -123,10 +125,14 @@ class Scene:
         if sensed is not None and sensed.target is not None:
             target = self._seen([sensed.target])[0]
         window = self._robot.window(moment.position)
+        movers = self._movers.at(moment)
+        shadows = [self._stain(one.outline + _CAST, edge=0, fill=140) for one in movers]
 
         parts: list[paint.Box | None] = [layer.box for _, layer in self._stains]
         if shadow is not None:
             parts.append(shadow.box)
+        parts += [one.box for one in shadows if one is not None]
+        parts += [one.window for one in movers]
         if window is not None:
             parts.append(paint.box_around(np.reshape(window, (2, 2)), 16 * unit, size))
         if target is not None:
@@ -144,12 +150,15 @@ class Scene:
         image = self._trail.image.crop(box)
         for colour, layer in self._stains:
             layer.lay(image, box, colour)
-        if shadow is not None:
-            shadow.lay(image, box, style.SHADOW)
+        for one in (*shadows, shadow):
+            if one is not None:
+                one.lay(image, box, style.SHADOW)
         if target is not None:
             diamond(image, box, target, 9.0, unit)
+        before = list(self._movers.lay(image, box, movers, self._depth))
         if window is not None:
             self._place_robot(image, box, window, moment)
+        put_back(self._depth, before)
         if hit is not None:
             cross(image, box, self._seen([hit])[0], 11.0, unit)
         left, top = box[0] - frame[0], box[1] - frame[1]
@@ -213,15 +222,7 @@ class Scene:
         robot = self._robot.shoot(window, moment.position, moment.heading)
         behind = self._depth[top * k : bottom * k, left * k : right * k]
         visible = (robot.mask >= 0) & (robot.depth < behind)
-        # Shrinking the coloured and the bare pixels together smooths the edge between the two.
-        colour = np.where(visible[..., None], robot.colour, 0).astype(np.uint8)
-        small = Image.fromarray(colour).reduce(k)
-        cover = Image.fromarray(np.where(visible, 255, 0).astype(np.uint8)).reduce(k)
-        at = (left - box[0], top - box[1])
-        here = (*at, at[0] + right - left, at[1] + bottom - top)
-        bare = image.crop(here)
-        bare.paste((0, 0, 0), mask=cover)
-        image.paste(ImageChops.add(bare, small), here)
+        lay_pixels(image, box, window, robot.colour, visible)
         unit = self._unit
         if right - left < _SMALLEST * unit:
             centre = ((left + right) / 2, (top + bottom) / 2)

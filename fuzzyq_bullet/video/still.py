@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.physics.camera import NOTHING, Lens, Mesh, Picture, lit
+from fuzzyq_bullet.physics.camera import NOTHING, Lens, Mesh, Picture, Window, lit
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.video.footprints import Floats
@@ -22,8 +22,10 @@ _BAND = 64
 """Rows of a triangle that are filled at a time: few enough to stay in the processor's cache."""
 
 
-def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Picture:
-    """Return the whole picture of solid things; its mask holds indices into ``meshes``.
+def photograph(
+    meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1, window: Window | None = None
+) -> Picture:
+    """Return the picture of solid things; its mask holds indices into ``meshes``.
 
     Surfaces are seen from outside alone, and one with a corner behind the camera is not seen.
 
@@ -31,20 +33,24 @@ def photograph(meshes: Sequence[Mesh], lens: Lens, oversampling: int = 1) -> Pic
         meshes: What to see; each triangle is lit by the normal at its first corner.
         lens: The camera.
         oversampling: How many times larger than the lens's size the picture is made.
+        window: The part of it that is made; by default all.
     """
     width, height = (side * oversampling for side in lens.size)
+    left, top, right, bottom = (k * oversampling for k in window or (0, 0, *lens.size))
     matrix = lens.projection() @ lens.view()
-    depth = np.ones((height, width), dtype=np.float32)
-    colour = np.full((height, width, 3), 255, dtype=np.uint8)
-    mask = np.full((height, width), NOTHING, dtype=np.int32)
+    shape = (bottom - top, right - left)
+    depth = np.ones(shape, dtype=np.float32)
+    colour = np.full((*shape, 3), 255, dtype=np.uint8)
+    mask = np.full(shape, NOTHING, dtype=np.int32)
     for index, mesh in enumerate(meshes):
         corners = np.column_stack([mesh.vertices, np.ones(len(mesh.vertices))]) @ matrix.T
         ahead = corners[:, 3] > 0.0
         x, y, z = (corners[:, :3] / np.where(ahead, corners[:, 3], np.nan)[:, None]).T
         # Row r of the picture is sampled at its lower edge, column c at its left one.
         seen = np.column_stack([(x + 1) * width / 2, (1 - y) * height / 2 - 1, (z + 1) / 2])
+        seen -= (left, top, 0.0)
         colours = lit(mesh)
-        for triangle in _facing(seen, mesh.triangles, width, height):
+        for triangle in _facing(seen, mesh.triangles, shape[1], shape[0]):
             _fill(seen[triangle], colours[triangle[0]], index, depth, colour, mask)
     return Picture(colour, depth, mask)
 

@@ -73,6 +73,8 @@ HEAT: Colour = (240, 228, 66)
 GROUND: Colour = (50, 58, 69)
 GRID: Colour = (61, 70, 82)
 OBSTACLE: Colour = (139, 152, 169)
+MOVER: Colour = (196, 178, 148)
+"""What moves by itself; an arrow on it says where it goes."""
 WALL: Colour = (92, 104, 120)
 SHADOW: Colour = (30, 35, 43)
 

@@ -1,7 +1,7 @@
 /** Light and dark: the colours of the style sheet, for what is drawn on a canvas. */
 
 const NAMES = [
-  "page", "card", "ink", "muted", "faint", "line", "ground", "grid", "obstacle", "wall",
+  "page", "card", "ink", "muted", "faint", "line", "ground", "grid", "obstacle", "mover", "wall",
   "left", "middle", "right", "goal", "target", "danger", "heat", "robot",
 ];
 

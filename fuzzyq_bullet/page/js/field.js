@@ -1,4 +1,5 @@
 /** The field from above: what stands there, the path, the detection lines, and the robot. */
+import { drawMovers, solid } from "./movers.js";
 import { colours, whenRecoloured } from "./colours.js";
 import { html, sharp, whenSized } from "./dom.js";
 
@@ -55,6 +56,7 @@ export class Field {
     if (this.still === null || this.follows) this.still = this.drawStill(width, height);
     const pen = sharp(this.canvas, width, height);
     pen.drawImage(this.still, 0, 0, width, height);
+    drawMovers(pen, this, moment);
     this.drawPath(pen, moment);
     if (decision && !(moment.over && this.run.data.outcome === "goal")) this.drawSensed(pen, decision);
     this.drawRobot(pen, moment);
@@ -95,16 +97,7 @@ export class Field {
     pen.fillStyle = pen.strokeStyle = colour.obstacle;
     pen.lineJoin = pen.lineCap = "round";
     for (const { corners, radius } of obstacles) {
-      pen.beginPath();
-      corners.forEach(([x, y], i) => pen[i ? "lineTo" : "moveTo"](...this.at(x, y)));
-      if (corners.length === 1) {
-        pen.arc(...this.at(...corners[0]), radius * this.scale, 0, 2 * Math.PI);
-      } else if (radius > 0) {
-        pen.closePath();
-        pen.lineWidth = 2 * radius * this.scale;
-        pen.stroke();
-      }
-      pen.fill();
+      solid(pen, corners.map(([x, y]) => this.at(x, y)), radius * this.scale);
     }
     if (walls) {
       pen.strokeStyle = colour.wall;

@@ -12,6 +12,7 @@ from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import aim_name, is_clear
 from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for, corridor
 from fuzzyq_bullet.video.meshes import walls_of
+from fuzzyq_bullet.video.movers import DrawnMovers
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Sensed, sensed_at, sensor_range
 
@@ -45,10 +46,11 @@ class Sensors:
         self._view = self._range + self._radius + 0.1
         self._scale = _DIAMETER * _FACTOR / 2 / self._view
         scenario = trajectory.scenario
-        self._obstacles = scenario.obstacles
+        self._obstacles = scenario.standing
         self._outlines: dict[int, Floats] = {}
-        self._centres = np.array([o.position for o in scenario.obstacles]).reshape(-1, 2)
-        self._extents = np.array([o.extent() for o in scenario.obstacles])
+        self._centres = np.array([o.position for o in self._obstacles]).reshape(-1, 2)
+        self._extents = np.array([o.extent() for o in self._obstacles])
+        self._movers = DrawnMovers(trajectory, lambda one: corners_for(one.extent() * self._scale))
         everywhere = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * 1e4
         self._walls = walls_of(scenario, everywhere)
         self._round = paint.mask(
@@ -94,6 +96,8 @@ class Sensors:
             seen = seen[np.argsort(gaps[seen])[:_MOST]]
         for index in seen.tolist():
             _fill(pen, at, self._outline(index), near, style.OBSTACLE)
+        for mover in self._movers.at(float(self._trajectory.ticks.time[tick]), tick):
+            _fill(pen, at, mover.outline, near, style.MOVER)
         for wall in self._walls:
             _fill(pen, at, wall, near, style.WALL)
 

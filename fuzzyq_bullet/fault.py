@@ -1,0 +1,62 @@
+"""Whose fault a contact was, and how fast both moved."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fuzzyq_bullet.moving import speed_at
+
+if TYPE_CHECKING:
+    from fuzzyq_bullet.trajectory import Trajectory
+
+FAULT_SPEED = 0.05
+"""A robot that moves faster than this (m/s) when it touches something is at fault."""
+FAULT_TIME = 0.3
+"""It is also at fault if it was so fast within this time (s) before."""
+
+
+def at_fault(trajectory: Trajectory) -> bool | None:
+    """Return whether the robot was at fault for the contact that ended its run; None without one.
+
+    Passive safety: a robot that stands, and has stood for a moment, has done what it can.
+    """
+    speed = robot_speed(trajectory)
+    return None if speed is None else speed > FAULT_SPEED
+
+
+def robot_speed(trajectory: Trajectory) -> float | None:
+    """Return the robot's greatest speed (m/s) in the 0.3 s before a contact; None without one."""
+    if trajectory.collision is None:
+        return None
+    ticks, time = trajectory.ticks, trajectory.collision.time
+    if trajectory.scenario.drive == "kinematic":  # the contact cut the last move short
+        return float(trajectory.decisions.step[-1] / (ticks.time[-1] - ticks.time[-2]))
+    before = ticks.time >= time - FAULT_TIME - 1e-9
+    before[-1] &= len(ticks.time) == 1  # the last speed is what the contact has made of it
+    return float(np.abs(ticks.speed[before]).max(initial=0.0))
+
+
+def mover_speed(trajectory: Trajectory) -> float | None:
+    """Return how fast (m/s) that moved what was touched; None for what stands, or no contact."""
+    hit, scenario = trajectory.collision, trajectory.scenario
+    if hit is None or hit.obstacle not in scenario.movers or len(trajectory.ticks.time) < 2:
+        return None
+    poses = trajectory.movers[:, scenario.movers.index(hit.obstacle)].tolist()
+    centre, time = scenario.obstacles[hit.obstacle].position, trajectory.ticks.time.tolist()
+    # A move of the kinematic drive is long, and the contact stopped the obstacle within the last.
+    last = 2 if scenario.drive == "kinematic" and len(time) > 2 else 1
+    return max(
+        speed_at(centre, poses[k - 1], poses[k], hit.point, time[k] - time[k - 1])
+        for k in range(-last, 0)
+    )
+
+
+def speeds_in_words(trajectory: Trajectory) -> str:
+    """Say how fast the two moved, if the robot touched something that moves; else nothing."""
+    other, own = mover_speed(trajectory), robot_speed(trajectory)
+    if other is None or own is None:
+        return ""
+    whose = "at fault" if own > FAULT_SPEED else "not at fault"
+    return f"it moved at {other:.2f} m/s, the robot at {own:.2f} m/s: {whose}"

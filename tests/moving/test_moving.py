@@ -1,0 +1,275 @@
+"""Moving obstacles: where they go, that they are seen and touched, and what the record says."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fuzzyq_bullet.episode import Episode, run, world_of
+from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.metrics import collision_text, result_of
+from fuzzyq_bullet.planning import Decision
+from fuzzyq_bullet.scenario import Scenario
+from fuzzyq_bullet.scenario.expectations import unmet_expectations
+from fuzzyq_bullet.scenario.files import dump_scenario, load_scenario, parse_scenario
+from fuzzyq_bullet.scenario.movers import courses_of
+from fuzzyq_bullet.shapes.motion import seen_from
+from fuzzyq_bullet.trajectory import Trajectory
+
+ROOM = """\
+name: moving
+arena: {size: [6.0, 4.0]}
+start: {position: [1.0, 2.0], heading: 0.0}
+goal: {position: [5.5, 2.0]}
+"""
+
+
+def room(*obstacles: str, more: str = "", folder: Path | None = None) -> Scenario:
+    lines = "".join(f"  - {{{one}}}\n" for one in obstacles)
+    lines = f"obstacles:\n{lines}" if lines else ""
+    return parse_scenario(f"{ROOM}{more}{lines}", folder=folder)
+
+
+def disc(x: float, y: float, motion: str, radius: float = 0.25) -> str:
+    return f"shape: cylinder, position: [{x}, {y}], radius: {radius}, motion: {{{motion}}}"
+
+
+def place(scenario: Scenario, time: float, index: int = 0) -> tuple[float, float]:
+    course = courses_of(scenario.obstacles, scenario.arena, scenario.seed)[index]
+    (x, y), pose = scenario.obstacles[index].position, course.pose(time)
+    return round(x + pose[0], 6), round(y + pose[1], 6)
+
+
+def stand(scenario: Scenario, seconds: float, *, step: float = 0.0) -> Trajectory:
+    """Let a robot decide on steps of one length, ahead, whatever comes."""
+    with world_of(scenario) as world:
+        episode = Episode(world, scenario, patience=1e9)
+        still = Decision(0.0, step, step, mode="routine")
+        while episode.outcome is None and episode.now.time < seconds:
+            episode.advance(still)
+        return episode.record() if episode.outcome else episode.so_far(still)
+
+
+# Where they go
+
+
+def test_a_patrol_goes_back_and_forth_and_pauses() -> None:
+    course = "kind: patrol, points: [[3, 1], [3, 2], [4, 2]], speed: 0.5, pause: 1.0"
+    world = room(disc(3.0, 1.0, course))
+    # A second at the first point, two to the next, a second there.
+    told = {0.5: (3, 1), 2.0: (3, 1.5), 3.5: (3, 2), 6.5: (4, 2), 8.0: (3.5, 2), 12.5: (3, 1)}
+    assert {time: place(world, time) for time in told} == told
+    looped = room(disc(3.0, 1.0, course.replace("pause: 1.0", "loop: true")))
+    back = 4.0 + math.sqrt(2.0) / 0.5  # two seconds a side, then straight to the first point
+    assert place(looped, back) == pytest.approx((3.0, 1.0))
+    assert place(looped, back + 1.0) == pytest.approx((3.0, 1.5))
+
+
+def test_a_patrol_begins_at_its_position() -> None:
+    world = room(disc(3.0, 1.5, "kind: patrol, points: [[3, 1], [3, 3]], speed: 0.5"))
+    assert [place(world, time) for time in (0.0, 1.0, 2.0)] == [(3, 1.5), (3, 1), (3, 1.5)]
+
+
+def test_what_goes_round_a_centre_turns_with_it() -> None:
+    world = room(
+        "shape: box, position: [3.0, 1.0], size: [0.4, 0.1], "
+        "motion: {kind: circle, centre: [2.0, 1.0], speed: 0.5}"
+    )
+    quarter = math.pi / 2 / 0.5
+    assert place(world, quarter) == pytest.approx((2.0, 2.0))
+    course = courses_of(world.obstacles, world.arena, 0)[0]
+    assert course.pose(quarter)[2] == pytest.approx(math.pi / 2)
+
+
+def test_a_wanderer_bounces_and_depends_on_seed_and_number_alone() -> None:
+    both = (disc(3.0, 1.0, "kind: wander, speed: 0.5"), disc(3.0, 3.0, "kind: wander, speed: 0.5"))
+    still = "shape: box, position: [2.0, 3.0], size: [0.5, 0.5]"
+    world = room(*both, still)
+    times = np.arange(0.0, 120.0, 0.1)
+    field = Field.of(world.standing, world.arena)
+    ways = [np.array([place(world, t, i) for t in times]) for i in (0, 1)]
+    for way in ways:
+        assert field.clearance(way).min() >= 0.25 - 1e-5
+        steps = np.hypot(*np.diff(way, axis=0).T)
+        assert steps.max() <= 0.05 + 1e-5  # shorter where it bounces
+        assert np.ptp(way, axis=0).min() > 2.0
+    # The same however often it is asked, and whatever else moves.
+    assert place(world, 90.0) == tuple(ways[0][900])
+    alone = room(both[0], "shape: cylinder, position: [5.0, 3.5], radius: 0.1", still)
+    assert place(alone, 30.0) == tuple(ways[0][300])
+    other = world.model_copy(update={"seed": 1})
+    assert place(other, 30.0) != place(world, 30.0)
+
+
+def test_a_trace_is_read_from_its_file_and_kept(tmp_path: Path) -> None:
+    (tmp_path / "walk.csv").write_text("t,x,y,yaw\n0,3,1,0\n2,3,2,1\n4,4,2,1\n")
+    world = room(disc(3.0, 1.0, "kind: trace, file: walk.csv"), folder=tmp_path)
+    assert [place(world, t) for t in (0, 1, 3, 9)] == [(3, 1), (3, 1.5), (3.5, 2), (4, 2)]
+    assert parse_scenario(dump_scenario(world)) == world  # wherever that is read
+
+
+def test_a_scenario_that_is_moved_takes_its_motions_along() -> None:
+    world = room(
+        disc(3.0, 1.0, "kind: patrol, points: [[3, 1], [3, 3]], speed: 0.5"),
+        disc(4.0, 3.0, "kind: circle, centre: [4, 2.5], speed: 0.5"),
+    )
+    there = world.moved(10.0, -5.0)
+    for index in (0, 1):
+        x, y = place(world, 1.5, index)
+        assert place(there, 1.5, index) == pytest.approx((x + 10.0, y - 5.0), abs=1e-4)
+
+
+# What they do to the robot
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_a_robot_at_rest_is_touched_and_not_at_fault(drive: str) -> None:
+    scenario = room(
+        disc(2.5, 2.0, "kind: patrol, points: [[2.5, 2], [0.5, 2]], speed: 0.5"),
+        more=f"drive: {drive}\nexpect: {{contact: not-at-fault}}\n",
+    )
+    record = stand(scenario, 5.0)
+    hit, result = record.collision, result_of(record)
+    assert hit is not None
+    assert hit.obstacle == 0
+    # From 1.5 m apart to 0.45 m, the sum of the radii.
+    assert hit.time == pytest.approx(1.05 / 0.5, abs=0.05 if drive == "wheels" else 0.7)
+    assert result.at_fault is False
+    assert "moved at 0.50 m/s, the robot at 0.00 m/s: not at fault" in collision_text(record, 1)
+    assert unmet_expectations(scenario.expect, result) == []
+    strict = scenario.expect.model_copy(update={"contact": "none"})
+    assert unmet_expectations(strict, result) == ["outcome collision, expected goal"]
+    assert record.ticks.position[-1] == pytest.approx((1.0, 2.0), abs=0.01)  # not pushed away
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_a_robot_that_drives_into_one_is_at_fault(drive: str) -> None:
+    scenario = room(
+        disc(3.0, 2.0, "kind: patrol, points: [[3, 2], [3, 2.1]], speed: 0.05"),
+        more=f"drive: {drive}\nexpect: {{contact: not-at-fault}}\n",
+    )
+    record = stand(scenario, 20.0, step=0.2)
+    result = result_of(record)
+    assert record.collision is not None
+    assert result.at_fault is True
+    assert unmet_expectations(scenario.expect, result) == ["outcome collision, expected goal"]
+    assert "at_fault" in result.model_dump()
+    assert "at_fault" not in result_of(stand(room(), 0.1)).model_dump()
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_what_stops_for_the_robot_never_touches_one_at_rest(drive: str) -> None:
+    motion = "kind: patrol, points: [[2.5, 2], [0.5, 2]], speed: 0.5, stops_for_robot: true"
+    record = stand(room(disc(2.5, 2.0, motion), more=f"drive: {drive}\n"), 8.0)
+    assert record.collision is None
+    way = record.movers[:, 0, 0]
+    assert way[-1] == way[-20 if drive == "wheels" else -5]  # it stands, and its clock with it
+    assert 0.1 <= record.ticks.clearance[-1] <= 0.7
+
+
+def test_one_that_has_passed_goes_on() -> None:
+    # It moves away from the robot, however near it is.
+    motion = "kind: patrol, points: [[1.5, 2], [5, 2]], speed: 0.5, stops_for_robot: true"
+    record = stand(room(disc(1.5, 2.0, motion)), 2.0)
+    assert record.movers[-1, 0, 0] == pytest.approx(2.5, abs=0.05)
+
+
+def test_rays_meet_it_where_it_is() -> None:
+    scenario = room(disc(4.0, 2.0, "kind: patrol, points: [[4, 2], [2, 2]], speed: 0.5"))
+    with world_of(scenario) as world:
+        episode = Episode(world, scenario)
+        z = world.model.sensor_height
+        told = []
+        for _ in range(3):
+            told.append(4.0 * world.cast([(1.0, 2.0, z)], [(5.0, 2.0, z)])[0])
+            for _ in range(10):
+                episode.advance(Decision(0.0, 0.0, 0.0, mode="routine"))
+    assert told == pytest.approx([2.75, 2.5, 2.25], abs=0.002)
+
+
+# What is on record
+
+
+def test_the_record_tells_where_everything_was(tmp_path: Path) -> None:
+    scenario = room(
+        disc(3.0, 3.0, "kind: wander, speed: 0.4"),
+        "shape: cylinder, position: [3.0, 2.2], radius: 0.1",
+        "shape: box, position: [4.0, 1.0], size: [0.8, 0.1], "
+        "motion: {kind: circle, centre: [3.6, 1.0], speed: 0.3}",
+    )
+    record = run(scenario)
+    assert record.movers.shape == (len(record.ticks.time), 2, 3)
+    for k, index in enumerate(scenario.movers):
+        for tick in (0, 40, len(record.ticks.time) - 1):
+            at = place(scenario, float(record.ticks.time[tick]), index)
+            assert record.movers[tick, k, :2] == pytest.approx(at, abs=1e-5)
+    # The clearance is the least to anything, where it was at that tick.
+    gaps = [Field.of(scenario.standing, scenario.arena).clearance(record.ticks.position)]
+    for k, index in enumerate(scenario.movers):
+        shape = scenario.obstacles[index]
+        local = seen_from(record.ticks.position, shape.position, record.movers[:, k])
+        gaps.append(Field.of([shape]).clearance(local))
+    assert record.ticks.clearance == pytest.approx(np.min(gaps, axis=0) - 0.2)
+
+    record.save(tmp_path / "run.npz")
+    loaded = Trajectory.load(tmp_path / "run.npz")
+    assert loaded == record
+    assert run(scenario).digest() == record.digest()
+    arrays = dict(np.load(tmp_path / "run.npz"))
+    arrays["movers.poses"] = arrays["movers.poses"] + 1e-3
+    np.savez(tmp_path / "other.npz", **arrays)
+    assert Trajectory.load(tmp_path / "other.npz").digest() != record.digest()
+    for bad in (arrays["movers.poses"][1:], arrays["movers.poses"] * np.nan):
+        np.savez(tmp_path / "bad.npz", **{**arrays, "movers.poses": bad})
+        with pytest.raises(UserError, match=r"damaged record: movers\.poses"):
+            Trajectory.load(tmp_path / "bad.npz")
+
+
+# What cannot be
+
+
+@pytest.mark.parametrize(
+    ("motion", "words"),
+    [
+        ("kind: patrol, points: [[3, 1]], speed: 0.5", "motion.points: must have at least 2"),
+        ("kind: patrol, points: [[3, 1], [3, 2]], speed: 3.5", "motion.speed: must be at most 3"),
+        ("kind: trace, file: no.csv", "motion.file: .*no.csv: "),
+        ("kind: trace, file: order.csv", "motion.file: .*order.csv:3: is out of order"),
+        ("kind: trace, file: fast.csv", "motion: row 2 .* at 4.00 m/s; at most 3"),
+        ("kind: trace, file: words.csv", "motion.file: .*words.csv:2: expected 3 numbers"),
+        ("kind: trace, file: head.csv", "motion.file: .*head.csv:1: expected the header t,x,y"),
+        ("kind: trace, file: inside.csv", r"motion: begins inside obstacles\[1\]"),
+        ("kind: trace, file: start.csv", "motion: begins .* from the start"),
+        ("kind: trace, file: wall.csv", "motion: begins in a wall"),
+        ("kind: circle, centre: [3, 1], speed: 0.5", "motion.centre: is the obstacle's own"),
+    ],
+)
+def test_a_motion_that_cannot_be_is_one_line(motion: str, words: str, tmp_path: Path) -> None:
+    for name, rows in {
+        "order": "0,3,1\n0,3,2\n",
+        "fast": "0,3,1\n0.5,3,3\n",
+        "words": "0,3,here\n",
+        "inside": "0,5,3\n",
+        "start": "0,1.2,2\n",
+        "wall": "0,5.9,2\n",
+    }.items():
+        (tmp_path / f"{name}.csv").write_text("t,x,y\n" + rows)
+    (tmp_path / "head.csv").write_text("0,3,1\n")
+    path = tmp_path / "room.yaml"
+    still = "shape: cylinder, position: [5, 3], radius: 0.3"
+    path.write_text(f"{ROOM}obstacles:\n  - {{{disc(3, 1, motion)}}}\n  - {{{still}}}\n")
+    with pytest.raises(UserError, match=rf"room\.yaml:6: obstacles\[0\]\.{words}") as told:
+        load_scenario(path)
+    assert len(told.value.problems) == 1
+
+
+def test_a_wanderer_needs_room() -> None:
+    with pytest.raises(UserError, match=r"scenario:6: .*motion\.kind: wander: .* in something"):
+        room(
+            disc(3.0, 1.0, "kind: wander, speed: 0.5"),
+            "shape: cylinder, position: [3.0, 1.2], radius: 0.5",
+        )
