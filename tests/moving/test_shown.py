@@ -1,0 +1,111 @@
+"""Moving obstacles in film, map, page and exports: at their pose, with their heading."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+
+import numpy as np
+import pytest
+
+from fuzzyq_bullet.doctor import examine
+from fuzzyq_bullet.episode import run
+from fuzzyq_bullet.metrics import has_way
+from fuzzyq_bullet.moving import headings_of, movers_csv, poses_at
+from fuzzyq_bullet.page.run_data import run_data
+from fuzzyq_bullet.trajectory import Trajectory
+from fuzzyq_bullet.video import style
+from fuzzyq_bullet.video.explanation import reason
+from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.movers import DrawnMovers
+from fuzzyq_bullet.video.timeline import Timeline, sensed_at
+from tests.moving.test_moving import disc, room, stand
+
+CROSSING = disc(3.0, 0.5, "kind: patrol, points: [[3, 0.5], [3, 3.5]], speed: 0.5", radius=0.3)
+
+
+@pytest.fixture(scope="module")
+def crossed() -> Trajectory:
+    return stand(room(CROSSING, "shape: cylinder, position: [4, 3], radius: 0.2"), 4.0)
+
+
+def test_the_map_shows_it_where_it_is(crossed: Trajectory) -> None:
+    shown = Map(crossed)
+    timeline = Timeline(crossed)
+    for time in (1.0, 3.0):
+        moment = timeline.at(time)
+        region = shown.draw(moment, sensed_at(crossed, 0))
+        assert region is not None
+        # Beside the arrow on it, which points up.
+        x, y = shown.spot([(2.78, 0.5 + 0.5 * time)])[0]
+        left, top = region.x - style.MAP.x, region.y - style.MAP.y
+        colour = region.image.getpixel((round(x - left), round(y - top)))
+        assert np.abs(np.subtract(colour, style.MOVER)).max() < 12
+
+
+def test_its_arrow_points_where_it_goes(crossed: Trajectory) -> None:
+    [drawn] = DrawnMovers(crossed, lambda _: 24).at(2.0, 40)
+    assert drawn.nose is not None
+    tip, *others = drawn.nose[:, 1].tolist()
+    assert tip > max(others)
+    assert drawn.outline.mean(axis=0) == pytest.approx((3.0, 1.5), abs=1e-3)
+    assert poses_at(crossed, 2.025)[0] == pytest.approx((3.0, 1.5125, 0.0))
+
+
+def test_a_halted_one_keeps_its_heading() -> None:
+    motion = "kind: patrol, points: [[2.5, 2], [0.5, 2]], speed: 0.5, stops_for_robot: true"
+    record = stand(room(disc(2.5, 2.0, motion)), 4.0)
+    assert headings_of(record)[[0, -1], 0] == pytest.approx([math.pi, math.pi])
+    turning = "kind: circle, centre: [4.0, 2.5], speed: 0.01"
+    assert np.isfinite(headings_of(stand(room(disc(4.0, 3.0, turning)), 0.5))).all()
+
+
+def test_the_sentence_says_what_comes() -> None:
+    # The planner of `stand` decides on no step; one comes along the detection lines' range.
+    left = disc(1.0, 3.5, "kind: patrol, points: [[1, 3.5], [1, 2.6]], speed: 0.3")
+    record = stand(room(left), 4.0)
+    told = [reason(record, k) for k in range(len(record.decisions.tick))]
+    assert "A moving obstacle comes from the left: waits" in told
+    assert not told[0].startswith("A moving obstacle")  # too far away to be seen
+    assert not told[-1].startswith("A moving obstacle")  # it goes back
+
+
+def test_csv_has_a_row_for_each_tick(crossed: Trajectory) -> None:
+    rows = list(csv.DictReader(io.StringIO(movers_csv(crossed))))
+    assert len(rows) == len(crossed.ticks.time)
+    assert float(rows[20]["position_y"]) == pytest.approx(1.0)
+    assert float(rows[20]["heading"]) == pytest.approx(math.pi / 2)
+    assert rows[20]["obstacle"] == "0"
+
+
+def test_the_page_has_its_way_and_does_not_draw_it_as_standing(crossed: Trajectory) -> None:
+    told = run_data(crossed)
+    assert len(told["field"]["obstacles"]) == 1
+    [mover] = told["movers"]
+    assert mover["corners"] == [[0, 0]]
+    assert mover["y"][20] == pytest.approx(1.0)
+
+
+def test_mcap_moves_its_frame(crossed: Trajectory) -> None:
+    pytest.importorskip("foxglove")
+    from fuzzyq_bullet.export.mcap import mcap_of
+
+    told = mcap_of(crossed)
+    assert b"/movers" in told
+
+
+def test_ways_and_doctor_reckon_with_what_stands() -> None:
+    # A door across the whole room, that opens.
+    door = (
+        "shape: box, position: [3.0, 2.0], size: [0.2, 3.9], "
+        "motion: {kind: patrol, points: [[3, 2], [3, 2.01]], speed: 0.01}"
+    )
+    assert has_way(room(door))
+    assert [one for one in examine(room(door)) if one.wrong] == []
+
+
+def test_a_scenario_whose_obstacles_move_can_be_filmed_and_run_again() -> None:
+    record = run(room(CROSSING.replace("0.5}", "0.5, stops_for_robot: true}")))
+    assert record.outcome in ("goal", "collision")
+    assert record == run(record.scenario)
