@@ -221,7 +221,7 @@ def test_the_policy_that_is_shipped_drives_round_a_pillar(planner: str) -> None:
 
 
 @pytest.mark.parametrize("planner", PLANNERS)
-@pytest.mark.parametrize("drive", ["kinematic", "wheels"])
+@pytest.mark.parametrize("drive", ["kinematic", pytest.param("wheels", marks=pytest.mark.slow)])
 def test_with_filter_and_ways_out_it_touches_nothing_and_gets_out_of_a_trap(
     planner: str, drive: str
 ) -> None:
