@@ -68,7 +68,7 @@ def test_mistakes_are_told_with_line_and_key(fuzzyq: Call, tmp_path: Path) -> No
         "max_turning: -1": "max_turning: must be more than 0, got -1",
         "max_turning: much": "max_turning: expected a number, got 'much'",
         "max_turnin: 1": "max_turnin: unknown key; did you mean 'max_turning'? "
-        "allowed: outcome, min_clearance, max_time, max_turning",
+        "allowed: outcome, min_clearance, max_time, pass_rate, max_turning",
     }
     files = [tmp_path / f"{number}.yaml" for number in range(len(mistakes))]
     for file, written in zip(files, mistakes, strict=True):
@@ -82,7 +82,7 @@ def test_mistakes_are_told_with_line_and_key(fuzzyq: Call, tmp_path: Path) -> No
 
 
 def test_without_the_plugin_the_key_is_unknown(inside: Call, folder: Path) -> None:
-    with pytest.raises(Exception, match=r"expect\.max_turning: unknown key; .*max_time$"):
+    with pytest.raises(Exception, match=r"expect\.max_turning: unknown key; .*pass_rate$"):
         inside("validate", folder / "calm.yaml")
 
 
