@@ -280,9 +280,8 @@ def test_every_kind_of_run_is_drawn_with_all_text_in_its_box(
         real(image, at, text, colour, size, bold=bold, align=align)
 
     monkeypatch.setattr(paint, "write", write)
-    monkeypatch.setattr(
-        "fuzzyq_bullet.video.scene.DETAIL", 1
-    )  # smooth edges take time, and are no text
+    for room in ("scene", "solid_movers"):  # smooth edges take time, and are no text
+        monkeypatch.setattr(f"fuzzyq_bullet.video.{room}.DETAIL", 1)
     run = all_runs[name]
     regions: list[DirtyRegion] = []
     with Compositor(run) as compositor:
