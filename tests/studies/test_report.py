@@ -24,6 +24,7 @@ from fuzzyq_bullet.studies.learning.study import NO_CONTROLLER, ComparisonPlan
 from fuzzyq_bullet.studies.learning.table import LEARNED
 from fuzzyq_bullet.studies.report.films import picked
 from fuzzyq_bullet.studies.report.markup import Html, join, tag
+from fuzzyq_bullet.studies.robust.study import Robust
 from fuzzyq_bullet.studies.selection import (
     HALF,
     ONE,
@@ -240,6 +241,8 @@ def test_every_sweep_of_a_folder_is_on_the_page(
     write(home / "escape", fields.model_dump(mode="json"), rows_of(fields), "escape.csv")
     again = Familiar(runs=1, counts="5", traps=1).plan()
     write(home / "familiar", again.model_dump(mode="json"), rows_of(again), "familiar.csv")
+    disturbed = Robust(runs=1, count=5, disturbances="noise", levels="2").plan()
+    write(home / "robust", disturbed.model_dump(mode="json"), rows_of(disturbed), "robust.csv")
 
     assert report(monkeypatch, home, *PLAIN) == 0
     assert capsys.readouterr().out == f"{home / 'report.html'}\n"
@@ -254,7 +257,14 @@ def test_every_sweep_of_a_folder_is_on_the_page(
             "best pair 1.5/0.5",
             "best on 2 environments of the training",
         ),
-        *("What learning gains", "Out of dead ends, fuzzy", "1.00 [0.21, 1.00]", "traps"),
+        *(
+            "Noise, slip and latency",
+            "0.01 m",
+            "What learning gains",
+            "Out of dead ends, fuzzy",
+            "1.00 [0.21, 1.00]",
+            "traps",
+        ),
         *("fuzzyq bench steps --runs 2 --count 50 --grid 2 ", "--traps 4 --rectangles 30"),
         "--planners fuzzy,fuzzy-q-lambda --counts 5,25 --runs 1 --drive kinematic --seed 0",
     ):
