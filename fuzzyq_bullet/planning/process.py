@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import shutil
+from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
@@ -83,7 +84,9 @@ class ProcessPlanner:
             )
         if shutil.which(settings.command[0]) is None:
             program = shorten(settings.command[0])
-            raise UserError(f"command: {program}: there is no such program that may be run")
+            if Path(settings.command[0]).is_file():
+                raise UserError(f"command: {program}: is not executable: chmod +x makes it so")
+            raise UserError(f"command: {program}: there is no such program")
         self._settings = settings
         self._angles = settings.rays.angles()
         self._seed = int(rng.integers(2**31))
