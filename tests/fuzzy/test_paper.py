@@ -239,8 +239,9 @@ def test_small_changes_of_the_inputs_make_small_changes_of_the_outputs(
 def test_five_points_are_a_rough_picture_of_101(distance: float, difference: float) -> None:
     rough = paper_controller(samples=5).infer(distance, difference)
     fine = paper_controller(samples=101).infer(distance, difference)
-    # Measured on a grid: 0.353 and 0.161, a third of the distance between two points of n = 5.
-    assert rough.turn == pytest.approx(fine.turn, abs=0.36)
+    # At most 0.3659 (d = 0.78, Df = 2.60) and 0.1673 (4.22, 2.23), on a grid of 1/32 that was made
+    # finer about its maximum: a third of the distance between two points of n = 5.
+    assert rough.turn == pytest.approx(fine.turn, abs=0.367)
     assert rough.stride == pytest.approx(fine.stride, abs=0.17)
 
 
