@@ -1,9 +1,10 @@
-"""Reading files that nobody vouches for: arrays or JSON of a bounded size, or a refusal."""
+"""Reading what nobody vouches for: arrays or JSON of a bounded size, numbers, or a refusal."""
 
 from __future__ import annotations
 
 import io
 import json
+import math
 import warnings
 import zipfile
 from pathlib import Path
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
+from fuzzyq_bullet.wording import shorten
 
 MAX_BYTES = 1 << 30
 """Most that an archive may unpack to; a million decisions, more than any run makes, take half."""
@@ -124,3 +126,26 @@ def _whole(text: str) -> int:
     if len(text) > _DIGITS:
         raise ValueError(f"a whole number of {len(text)} digits; at most {_DIGITS} are allowed")
     return int(text)
+
+
+def number(text: str, where: str, *, least: float = -math.inf, most: float = math.inf) -> float:
+    """Return the number that a text stands for.
+
+    Args:
+        text: The text.
+        where: File, line and key, for messages.
+        least: Least value that is right.
+        most: Greatest value that is right.
+
+    Raises:
+        UserError: If it is none, not finite, or out of bounds.
+    """
+    try:
+        value = float(text) if len(text) < 100 else math.nan
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise UserError(f"{where}: {shorten(text.strip())} is not a finite number")
+    if not least <= value <= most:
+        raise UserError(f"{where}: {value:g} is out of bounds; allowed: {least:g} to {most:g}")
+    return value

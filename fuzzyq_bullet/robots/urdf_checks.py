@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.robots.base import RobotModel
-from fuzzyq_bullet.robots.urdf_file import Element, Reader, read_urdf
+from fuzzyq_bullet.robots.urdf_file import Reader, read_urdf
 from fuzzyq_bullet.robots.urdf_parts import Link, moved, read_link, transform
+from fuzzyq_bullet.xml_tree import Element
 
 _NEAR = 0.002
 """How exactly wheels must lie opposite each other, and on the ground (m)."""
@@ -86,7 +87,7 @@ def _robot(path: Path, left: str | None, right: str | None, stamp: tuple[int, in
 
 def _links(reader: Reader, root: Element) -> dict[str, Link]:
     links: dict[str, Link] = {}
-    for element in root.all("link"):
+    for element in root.every("link"):
         name = reader.text(element, "name")
         if name in links:
             raise reader.error(element, f"link {name!r} is there twice")
@@ -99,7 +100,7 @@ def _links(reader: Reader, root: Element) -> dict[str, Link]:
 def _joints(reader: Reader, root: Element, links: dict[str, Link]) -> dict[str, Element]:
     joints: dict[str, Element] = {}
     parents: dict[str, str] = {}
-    for joint in root.all("joint"):
+    for joint in root.every("joint"):
         name = reader.text(joint, "name")
         if name in joints:
             raise reader.error(joint, f"joint {name!r} is there twice")

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
-from fuzzyq_bullet.robots.urdf_file import Element, Reader
+from fuzzyq_bullet.robots.urdf_file import Reader
+from fuzzyq_bullet.xml_tree import Element
 
 _MAX_MESH = 20_000_000
 _SIDES = 32
@@ -44,9 +45,9 @@ def read_link(reader: Reader, element: Element) -> Link:
     """
     name = reader.text(element, "name")
     mass = _mass(reader, element, name)
-    for visual in element.all("visual"):
+    for visual in element.every("visual"):
         _shape(reader, visual, collides=False)
-    shapes = [_shape(reader, one, collides=True) for one in element.all("collision")]
+    shapes = [_shape(reader, one, collides=True) for one in element.every("collision")]
     points = np.vstack([np.zeros((0, 3)), *shapes])
     return Link(element, mass, points, _friction(reader, element))
 

@@ -93,7 +93,7 @@ def solid(text: str, pose: str = "") -> str:
             ":3: uri: '../x.stl' lies outside the folder",
         ),
         (solid("<mesh><uri>broken.stl</uri></mesh>"), "broken.stl: is a mesh without triangles"),
-        (solid("<mesh><uri>bomb.dae</uri></mesh>"), "bomb.dae: declares a document type"),
+        (solid("<mesh><uri>bomb.dae</uri></mesh>"), "bomb.dae:1: declares a document type"),
         (
             solid("<mesh><uri>a.blend</uri></mesh>"),
             ":3: uri: no mesh format '.blend'; allowed: .stl",

@@ -11,6 +11,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.quantities import MAX_OBSTACLES, MIN_RADIUS
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel, no_robot, robot_model, robot_names
 from fuzzyq_bullet.scenario.places import Bounds
+from fuzzyq_bullet.untrusted import number as number_of
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 Unknown: TypeAlias = Literal["blocked", "free"]
@@ -98,7 +99,7 @@ def _numbers(
     words = text.split(",")
     if len(words) not in counts:
         raise UserError(f"{option}: expected {form}, got {shorten(text)}")
-    return [number(word, option, least=-1e6, most=1e6) for word in words]
+    return [number_of(word, option, least=-1e6, most=1e6) for word in words]
 
 
 @dataclass
@@ -147,29 +148,6 @@ def beside(folder: Path, name: str, where: str) -> Path:
             f"{where}: {shorten(name)} lies outside the folder {folder}; only files in it are read"
         )
     raise UserError(f"{where}: there is no file {shorten(str(folder / name))}")
-
-
-def number(text: str, where: str, *, least: float = -math.inf, most: float = math.inf) -> float:
-    """Return the number that a text stands for.
-
-    Args:
-        text: The text.
-        where: File, line and key, for messages.
-        least: Least value that is right.
-        most: Greatest value that is right.
-
-    Raises:
-        UserError: If it is none, not finite, or out of bounds.
-    """
-    try:
-        value = float(text) if len(text) < 100 else math.nan
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise UserError(f"{where}: {shorten(text.strip())} is not a finite number")
-    if not least <= value <= most:
-        raise UserError(f"{where}: {value:g} is out of bounds; allowed: {least:g} to {most:g}")
-    return value
 
 
 def too_many(path: Path, count: int) -> str:

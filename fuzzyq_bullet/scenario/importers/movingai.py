@@ -18,10 +18,10 @@ from fuzzyq_bullet.scenario.importers.foreign import (
     ForeignMap,
     ImportOptions,
     beside,
-    number,
 )
 from fuzzyq_bullet.scenario.importers.images import cell_size
 from fuzzyq_bullet.scenario.importers.registry import register_importer
+from fuzzyq_bullet.untrusted import number
 from fuzzyq_bullet.wording import shorten
 
 Letters: TypeAlias = NDArray[np.uint8]

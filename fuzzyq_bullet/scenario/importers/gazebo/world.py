@@ -21,10 +21,10 @@ from fuzzyq_bullet.scenario.importers.foreign import (
 from fuzzyq_bullet.scenario.importers.gazebo import solids
 from fuzzyq_bullet.scenario.importers.gazebo.meshes import bodies, read_mesh
 from fuzzyq_bullet.scenario.importers.gazebo.poses import HERE, Matrix, Scope
-from fuzzyq_bullet.scenario.importers.gazebo.xml_tree import Element, read_xml
 from fuzzyq_bullet.scenario.importers.registry import register_importer
 from fuzzyq_bullet.scenario.places import Bounds
 from fuzzyq_bullet.wording import shorten
+from fuzzyq_bullet.xml_tree import Element, read_xml
 
 _MARGIN = 1.0
 """Free space around all that stands in a world (m)."""

@@ -11,7 +11,7 @@ from typing import Any
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
-from fuzzyq_bullet.scenario.importers.foreign import number
+from fuzzyq_bullet.untrusted import number
 from fuzzyq_bullet.wording import shorten
 
 _MAX_BYTES = 20_000_000
@@ -94,10 +94,24 @@ def read_xml(path: Path, what: str) -> Element:
     """Return the outermost element of an XML file.
 
     Raises:
-        UserError: If it cannot be read, is no XML, declares entities or a document type, or is too
-            deep or too large; one line.
+        UserError: If it cannot be read, or as ``parse_xml``.
     """
-    content = read_bytes(path, what=what, most=_MAX_BYTES)
+    return parse_xml(read_bytes(path, what=what, most=_MAX_BYTES), path, what)
+
+
+def parse_xml(content: bytes, path: Path, what: str) -> Element:
+    """Return the outermost element of XML that was read.
+
+    Entities and document types are refused: they are how XML blows up.
+
+    Args:
+        content: What was read.
+        path: The file that it was read from.
+        what: What it should be, in words.
+
+    Raises:
+        UserError: If it is no XML, declares entities or a document type, or is too deep; one line.
+    """
     from defusedxml import DefusedXmlException
     from defusedxml.sax import parseString
 
@@ -106,8 +120,8 @@ def read_xml(path: Path, what: str) -> Element:
         parseString(content, builder, forbid_dtd=True)
     except DefusedXmlException as error:
         raise UserError(
-            f"{path}: declares a document type or entities, which {what} does not need; "
-            "take <!DOCTYPE ...> out"
+            f"{path}:{builder.line}: declares a document type or entities, which {what} does not "
+            "need; take <!DOCTYPE ...> out"
         ) from error
     except xml.sax.SAXParseException as error:
         why = error.getMessage()
@@ -133,9 +147,14 @@ class _Builder(xml.sax.handler.ContentHandler):
         """Keep what knows the line."""
         self._locator = locator
 
+    @property
+    def line(self) -> int:
+        """Where the parser is; 1 where it does not know."""
+        return (self._locator.getLineNumber() if self._locator is not None else None) or 1
+
     def startElement(self, name: str, attrs: Any) -> None:  # noqa: N802
         """Begin an element."""
-        line = self._locator.getLineNumber()
+        line = self.line
         self._count += 1
         if self._count > _MAX_ELEMENTS:
             raise UserError(f"{self._path}:{line}: more than {_MAX_ELEMENTS} elements")
