@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from fuzzyq_bullet.drives.disturbances import Localiser, stream
+from fuzzyq_bullet.drives.disturbances import SURE, Localiser, stream
 from fuzzyq_bullet.physics.movers import Floats
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
@@ -53,6 +53,7 @@ class Driver(ABC):
             noise if told.is_disturbed else None,
         )
         self._localiser = Localiser(told.pose_noise, told.heading_noise, stream(seed, "pose"))
+        self._uncertainty = SURE * told.noise
         self._reading_lasts = 0.0 if told.rate is None else 1.0 / told.rate
         self._read_at, self._read_from = -math.inf, (0.0, 0.0)
         self._field, self._radius = world.field, scenario.robot.radius
@@ -90,6 +91,7 @@ class Driver(ABC):
             sensor=self._sensor.at(self._read_from, error.heading),
             motion=self._motion,
             unit=self._radius,
+            uncertainty=self._uncertainty,
         )
 
     def _note(self, state: RobotState) -> None:

@@ -7,14 +7,12 @@ scenario asks for it.
 from __future__ import annotations
 
 import math
-from collections import deque
-from typing import Generic, NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
 DRIFT = 5.0
 """Time (s) after which an error of the pose has become another."""
-_T = TypeVar("_T")
 _STREAMS = {"noise": 10, "dropout": 11, "pose": 12, "slip": 13}
 SURE = 3.0
 """Errors of so many standard deviations are reckoned with."""
@@ -66,20 +64,3 @@ class Localiser:
             self._error = kept * self._error + math.sqrt(1.0 - kept * kept) * self._scale * drawn
             self._time = time
         return PoseError(*self._error.tolist())
-
-
-class Delay(Generic[_T]):
-    """Holds commands back for a number of ticks.
-
-    Args:
-        ticks: How many.
-        before: The command in force until the first arrives.
-    """
-
-    def __init__(self, ticks: int, before: _T) -> None:
-        self._waiting = deque([before] * ticks)
-
-    def pass_on(self, command: _T) -> _T:
-        """Take the command of this tick, and return the one that arrives now."""
-        self._waiting.append(command)
-        return self._waiting.popleft()

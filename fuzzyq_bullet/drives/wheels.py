@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable
 
 import numpy as np
 
 from fuzzyq_bullet.drives.base import Driver
-from fuzzyq_bullet.drives.disturbances import SURE, Delay, stream
+from fuzzyq_bullet.drives.disturbances import SURE, stream
 from fuzzyq_bullet.drives.velocity_controller import (
     STILL,
     Twist,
@@ -73,7 +74,6 @@ class WheelsDriver(Driver):
             wheel_radius=limits.spec.wheel_radius,
             track=limits.spec.track,
             latency=delay * tick_time,
-            uncertainty=_uncertainty(scenario),
         )
         super().__init__(world, scenario, motion)
         self._world = world
@@ -81,7 +81,8 @@ class WheelsDriver(Driver):
         self._latency = motion.latency
         self._controller = VelocityController(limits, tick_time + self._latency)
         self._twist = STILL
-        self._delay = Delay(delay, STILL)
+        self._on_their_way = deque([STILL] * delay)
+        self._uncertainty += _motion_uncertainty(scenario, motion.period)
         self._slips = stream(scenario.seed, "slip")
         self._grip = np.ones(2)
         world.robot.place(*scenario.start.position, scenario.start_heading())
@@ -89,11 +90,7 @@ class WheelsDriver(Driver):
 
     def advance(self, decision: Decision) -> None:
         """Follow the decision for one decision period."""
-
-        def twist(heading: float, travelled: float) -> Twist:
-            return self._controller.twist(decision, heading, travelled)
-
-        self._aim(twist)
+        self._aim(lambda heading, travelled: self._controller.twist(decision, heading, travelled))
 
     def steer(self, twist: Twist) -> None:
         """Hold a twist for one decision period; in the goal the robot stops by itself.
@@ -118,15 +115,15 @@ class WheelsDriver(Driver):
         travelled = 0.0
         for _ in range(self._decision_ticks):
             before = self.ticks[-1]
-            in_goal = self._in_goal(before)
             believed = before.heading + self._localiser.error(before.time).heading
             turning, ahead = before.turn_rate * self._latency, before.speed * self._latency
             wanted = (
                 self._in_the_end(before)
-                if in_goal
+                if self._in_goal(before)
                 else twist_at(believed + turning, travelled + ahead)
             )
-            contact = self._drive(self._delay.pass_on(wanted))
+            self._on_their_way.append(wanted)
+            contact = self._drive(self._on_their_way.popleft())
             self._record()
             now = self.ticks[-1]
             self._passing.move((now.x, now.y))
@@ -191,17 +188,17 @@ class WheelsDriver(Driver):
         self._note(self._world.robot.state(self.steps * TIME_STEP))
 
 
-def _uncertainty(scenario: Scenario) -> float:
-    """Return how much less may be free ahead than is told (m), by what the scenario disturbs.
+def _motion_uncertainty(scenario: Scenario, period: float) -> float:
+    """Return how much farther than it should a disturbed robot may drive (m).
 
-    Readings are too long by ``SURE`` standard deviations at most, or as old as the time between
-    two; a lost reading is noticed one decision later; slipping wheels brake later.
+    Readings are as old as the time between two; a lost one is noticed one decision later; slipping
+    wheels brake later.
     """
     sensor, robot = scenario.sensor, scenario.robot
     late = 0.0 if sensor.rate is None else 1.0 / sensor.rate
-    lost = 1.0 / DECISIONS_A_SECOND if sensor.dropout > 0.0 else 0.0
+    lost = period if sensor.dropout > 0.0 else 0.0
     braking = robot.max_speed**2 / (2.0 * robot.acceleration)
-    return SURE * (sensor.noise + robot.slip * braking) + robot.max_speed * (late + lost)
+    return SURE * robot.slip * braking + robot.max_speed * (late + lost)
 
 
 def _at_rest(state: RobotState) -> bool:

@@ -51,8 +51,6 @@ class Motion:
         wheel_radius: Radius of the two wheels (m).
         track: Distance between them (m).
         latency: Time from a decision to the wheels (s).
-        uncertainty: How much less may be free than the sensor tells (m): its noise, and whatever
-            else the scenario disturbs.
     """
 
     max_speed: float
@@ -65,7 +63,6 @@ class Motion:
     wheel_radius: float = 0.05
     track: float = 0.28
     latency: float = 0.0
-    uncertainty: float = 0.0
 
     def way_to_stop(self, speed: float) -> float:
         """Return the way (m) from full braking at ``speed`` (m/s) to a stop."""
@@ -171,14 +168,17 @@ class Observation:
         heading: Direction the robot faces (rad), anticlockwise from x.
         speed: Forward speed (m/s).
         turn_rate: Turn rate (rad/s), positive to the left.
-        goal: Centre of the goal (m), world frame, shape (2,).
-        goal_radius: Radius of the goal (m).
+        goal: Centre (m), world frame, shape (2,), of the next via point, or of the goal when all
+            are passed.
+        goal_radius: Radius of that (m).
         range: Longest distance the sensor tells (m): 5·S_p unless a scenario says more.
         radius: Half the width of a detection line (m): the robot's radius and a margin.
         sensor: What else can be sensed at this instant.
         motion: Limits of a body that must turn and brake, or None for the paper's point robot,
             which faces any way at once and stops at once (Eq. 17).
         unit: S_p, the unit of the fuzzy controller (m): the robot's radius.
+        uncertainty: How much less may be free than the sensor tells (m), by its noise and whatever
+            else the scenario disturbs.
     """
 
     time: float
@@ -193,6 +193,7 @@ class Observation:
     sensor: RangeSensor = field(compare=False, repr=False)
     motion: Motion | None = None
     unit: float = STEP_UNIT
+    uncertainty: float = 0.0
 
     def sense(self, headings: Sequence[float]) -> list[float]:
         """Return the free distance (m) along each of the world headings (rad).

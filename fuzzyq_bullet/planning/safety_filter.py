@@ -28,7 +28,8 @@ def safety_filter(decision: Decision, observation: Observation) -> Decision:
     if observation.motion is not None:
         return _filtered_on_wheels(decision, observation, observation.motion)
     [free] = observation.sense([decision.heading])
-    return decision._replace(step=_usable(free, decision.step), guard=free)
+    usable = free - RESERVE - observation.uncertainty
+    return decision._replace(step=max(0.0, min(decision.step, usable)), guard=free)
 
 
 def _filtered_on_wheels(decision: Decision, observation: Observation, motion: Motion) -> Decision:
@@ -44,7 +45,7 @@ def _filtered_on_wheels(decision: Decision, observation: Observation, motion: Mo
     # How far the robot still turns until it hears of it, and while it reverses its turn rate.
     coast = observation.turn_rate * abs(observation.turn_rate) / (2.0 * motion.turn_acceleration)
     coast += observation.turn_rate * motion.latency
-    reserve = RESERVE + motion.uncertainty
+    reserve = RESERVE + observation.uncertainty
     start = max(0.0, min(coast, turn)) if turn >= 0.0 else min(0.0, max(coast, turn))
     spacing = _spacing(motion, observation.speed)
     if start == coast and NARROW < abs(turn) <= spacing:
@@ -89,10 +90,6 @@ def _free(decision: Decision, observation: Observation, headings: list[float]) -
     if missing:
         known.update(zip(missing, observation.sense(missing), strict=True))
     return [known[heading] for heading in headings]
-
-
-def _usable(free: float, step: float) -> float:
-    return max(0.0, min(step, free - RESERVE))
 
 
 def _spread(start: float, end: float, spacing: float) -> list[float]:

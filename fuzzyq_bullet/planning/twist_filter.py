@@ -40,7 +40,7 @@ def twist_filter(twist: TwistCommand, observation: Observation) -> tuple[TwistCo
     for part in range(PARTS, -1, -1):
         tried = twist._replace(speed=speed * part / PARTS, turn_rate=rate)
         arc = _arc(tried, observation, motion)
-        free, shortest = _free(arc, observation, RESERVE + motion.uncertainty)
+        free, shortest = _free(arc, observation, RESERVE + observation.uncertainty)
         if free:
             return tried, shortest
     return twist._replace(speed=0.0, turn_rate=0.0), shortest
