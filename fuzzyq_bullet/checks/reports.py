@@ -6,7 +6,7 @@ import json
 import os
 import platform
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 from xml.etree import ElementTree
@@ -163,14 +163,7 @@ def verdict_commands(verdict: Verdict) -> list[str]:
         line = int(placed["line"] or 1) if placed else verdict.line
         text = "\n".join([*verdict.why, *([verdict.replay] if verdict.result else [])])
         told.append(_command("error", verdict.file, line, verdict.name, text))
-    for warning in verdict.warnings:
-        placed = _PLACE.match(warning)
-        line = int(placed["line"] or 1) if placed else 1
-        told.append(_command("warning", verdict.file, line, verdict.name, warning))
-    if verdict.changes:
-        text = "\n".join(verdict.changes)
-        told.append(_command("warning", verdict.file, verdict.line, verdict.name, text))
-    return told
+    return [*told, *_remarks(verdict, verdict.warnings)]
 
 
 def group_commands(group: Group, verdicts: Sequence[Verdict]) -> list[str]:
@@ -191,14 +184,19 @@ def group_commands(group: Group, verdicts: Sequence[Verdict]) -> list[str]:
             group.replay,
         ]
         told.append(_command("error", group.file, group.line, group.name, "\n".join(lines)))
-    for warning in dict.fromkeys(one for verdict in verdicts for one in verdict.warnings):
+    warnings = dict.fromkeys(one for verdict in verdicts for one in verdict.warnings)
+    return [*told, *_remarks(group, warnings)]
+
+
+def _remarks(verdict: Verdict | Group, warnings: Iterable[str]) -> Iterator[str]:
+    """Yield commands for warnings, at the lines that they name, and for changes."""
+    for warning in warnings:
         placed = _PLACE.match(warning)
         line = int(placed["line"] or 1) if placed else 1
-        told.append(_command("warning", group.file, line, group.name, warning))
-    if group.changes:
-        text = "\n".join(group.changes)
-        told.append(_command("warning", group.file, group.line, group.name, text))
-    return told
+        yield _command("warning", verdict.file, line, verdict.name, warning)
+    if verdict.changes:
+        text = "\n".join(verdict.changes)
+        yield _command("warning", verdict.file, verdict.line, verdict.name, text)
 
 
 def problem_command(problem: str) -> str:
