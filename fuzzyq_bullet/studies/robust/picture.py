@@ -50,6 +50,8 @@ def robust_picture(lines: Sequence[Line], about: str) -> Figure:
     axes[0][0].yaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
     axes[0][0].set_ylabel("reached")
     axes[1][0].set_ylabel("time ÷ undisturbed")
+    low, high = axes[1][0].get_ylim()
+    axes[1][0].set_ylim(min(low, 0.8), max(high, 1.2))  # or chance would look like a slope
     if len(planners) > 1:
         axes[0][0].legend(fontsize=8)
     return figure
