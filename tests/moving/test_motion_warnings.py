@@ -59,10 +59,10 @@ def test_a_box_that_turns_is_where_it_has_turned_to(tmp_path: Path) -> None:
     assert told(tmp_path, bar % (poses % (8, 1.57)), WALL_BOX) == []
     [line] = told(tmp_path, (bar % (poses % (8, 1.57))).replace("1.6", "2.2"), WALL_BOX)
     assert "goes into a wall" in line
-    # What is long on one side alone ends up above its centre, or below it.
-    wedge = "shape: polygon, points: [[3.0, 0.7], [4.9, 0.9], [4.9, 1.1], [3.0, 1.3]], motion: {%s}"
-    assert told(tmp_path, wedge % (poses % (8, 1.57)).replace("3, 1", "3.6, 1")) == []
-    [line] = told(tmp_path, wedge % (poses % (8, -1.57)).replace("3, 1", "3.6, 1"))
+    # Turned to the left, the long corner of a wedge is below; turned to the right, beside it.
+    wedge = "shape: polygon, points: [[3.0, 0.4], [4.9, 1], [4.9, 1.6], [3.0, 1.6]], motion: {%s}"
+    assert told(tmp_path, wedge % (poses % (8, -0.785))) == []
+    [line] = told(tmp_path, wedge % (poses % (8, 0.785)))
     assert "goes into a wall" in line
     pillar = "shape: cylinder, position: [3.0, 1.7], radius: 0.2"
     [line] = told(tmp_path, bar % (poses % (8, 1.57)), pillar)
