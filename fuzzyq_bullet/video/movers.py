@@ -67,11 +67,15 @@ class DrawnMovers:
         for k, (index, shape, outline, pieces) in enumerate(self._solids):
             heading = float(self._headings[tick, k])
             x, y, _ = pose = poses[k]
-            size = _NOSE * min(shape.extent(), shape.thickness(), 0.5)
-            nose = None if math.isnan(heading) else arrow((x, y), heading, size)
+            nose = None if math.isnan(heading) else arrow((x, y), heading, nose_size(shape))
             parts = [placed(one, shape.position, pose) for one in pieces]
             drawn.append(Drawn(index, placed(outline, shape.position, pose), parts, nose))
         return drawn
+
+
+def nose_size(shape: Shape) -> float:
+    """Return the size (m) of the arrow on an obstacle."""
+    return _NOSE * min(shape.extent(), shape.thickness(), 0.5)
 
 
 def points_of(drawn: list[Drawn]) -> Floats:
