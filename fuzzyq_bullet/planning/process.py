@@ -93,7 +93,7 @@ class ProcessPlanner:
             raise UserError(f"command: {program}: there is no such program")
         if (script := _missing_script(settings.command[1:])) is not None:
             raise UserError(
-                f"command: {shorten(script)}: there is no such file; what begins with ./ is looked "
+                f"command: {script!r}: there is no such file; what begins with ./ is looked "
                 "for beside the scenario"
             )
         self._settings = settings

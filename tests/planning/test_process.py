@@ -103,10 +103,10 @@ def test_a_twist_needs_wheels(tmp_path: Path) -> None:
         ("{name: process, command: [./nobody]}", "planner.command: .*there is no such program"),
         (
             "{name: process, command: [sh, ./missing.py]}",
-            "own.yaml:5: planner.command: .*/missing.py: there is no such file",
+            "own.yaml:5: planner.command: '.*/missing.py': there is no such file",
         ),
         ("{name: process, command: [sh, ../missing]}", "planner.command: .*there is no such file"),
-        ("{name: process, command: [sh, -u, gone.py]}", "planner.command: gone.py: there is no"),
+        ("{name: process, command: [sh, -u, gone.py]}", "planner.command: 'gone.py': there is no"),
         ("{name: process, command: [sh], rate: 7}", "planner.rate: .*240"),
         ("{name: process, command: [sh], time_limit: 0}", "planner.time_limit: "),
         ("{name: process, command: [sh], rays: {count: -1}}", "planner.rays.count: "),
