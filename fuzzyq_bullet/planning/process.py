@@ -24,7 +24,7 @@ _Word: TypeAlias = Annotated[str, Strict(), Field(max_length=4096, pattern=r"^[^
 LINE_ANGLE = math.radians(45.0)
 """Angle of the left and right lines from the middle one (rad)."""
 
-_SCRIPTS = frozenset(".py .pl .rb .js .mjs .ts .sh .lua .jl .r .m .php .tcl .jar".split())
+_SCRIPTS = {".py", ".pl", ".rb", ".js", ".mjs", ".ts", ".sh", ".lua", ".jl", ".r", ".php", ".jar"}
 """How the names of programs end that an interpreter runs."""
 
 
@@ -176,6 +176,7 @@ def _missing_script(words: tuple[str, ...]) -> str | None:
     """
     for i, word in enumerate(words):
         is_path = i == 0 and "/" in word and not word.startswith("-")
-        if (is_path or Path(word).suffix.lower() in _SCRIPTS) and not os.path.exists(word):
+        is_script = is_path or Path(word).suffix.lower() in _SCRIPTS
+        if is_script and not os.path.exists(word):  # noqa: PTH110 – takes a name of any length
             return word
     return None
