@@ -161,3 +161,12 @@ def test_nothing_is_left_behind_when_the_run_is_killed(tmp_path: Path, signum: i
 def test_the_examples_reach_the_goal(name: str, fuzzyq: Call) -> None:
     done = fuzzyq("check", CONTROLLERS / f"{name}.yaml", "--jobs", 1)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("model", ["jackal", "husky"])
+def test_the_example_in_python_leads_larger_robots_too(model: str, tmp_path: Path) -> None:
+    text = (CONTROLLERS / "gap.yaml").read_text().replace("./gap.py", str(CONTROLLERS / "gap.py"))
+    path = tmp_path / "gap.yaml"
+    path.write_text(f"{text}robot: {{model: {model}}}\n")
+    assert run(load_scenario(path)).outcome == "goal"
