@@ -71,6 +71,7 @@ class Result(BaseModel):
             for a planner without rules, and where nothing ever came so near.
         digest: Hash of the exact trajectory.
         version: Version of fuzzyq_bullet.
+        no_shortest_path: Why ``shortest_path_m`` is null; not there if it is a length.
         via_passed: Via points that were passed; not there in a scenario without any.
         at_fault: Whether the robot moved faster than 0.05 m/s when it touched something, or within
             0.3 s before; not there if it touched nothing.
@@ -97,14 +98,15 @@ class Result(BaseModel):
     rules_turn: float | None = None
     digest: str
     version: str
+    no_shortest_path: str | None = None
     via_passed: int | None = None
     at_fault: bool | None = None
 
     @model_serializer(mode="wrap")
     def _without_via(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out ``via_passed`` without via points, and ``at_fault`` without a contact."""
+        """Leave out what does not apply: the last three fields."""
         told: dict[str, Any] = handler(self)
-        for name in ("via_passed", "at_fault"):
+        for name in ("no_shortest_path", "via_passed", "at_fault"):
             if getattr(self, name) is None:
                 told.pop(name, None)
         return told
@@ -153,6 +155,7 @@ def result_of(trajectory: Trajectory) -> Result:
         rules_turn=None if turned is None else round(turned, 6),
         digest=trajectory.digest(),
         version=trajectory.version,
+        no_shortest_path=_why_none(scenario) if shortest is None else None,
         via_passed=int(trajectory.via_passed[-1]) if scenario.via else None,
         at_fault=at_fault(trajectory),
     )
@@ -220,6 +223,13 @@ def _mean_jerk(trajectory: Trajectory) -> float | None:
         return None
     period = ticks.time[1] - ticks.time[0]
     return float(np.abs(np.diff(ticks.speed[:-1], 2)).mean() / period**2)
+
+
+def _why_none(scenario: Scenario) -> str:
+    """Return why there is no length of a shortest path."""
+    if _is_crowded(scenario):
+        return f"not looked for among more than {MOST_ROUND} corners and cylinders"
+    return "there is no way"
 
 
 def _is_crowded(scenario: Scenario) -> bool:

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.early_warnings import early_warnings
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.scenario import bundled_scenarios, load_scenario, realise
-from fuzzyq_bullet.scenario.files import find_scenario
+from fuzzyq_bullet.scenario import bundled_scenarios, find_scenario, load_scenario, realise
 from tests.helpers.commands import Call
 
 HEAD = "name: doubtful\nstart: {position: [1.0, 5.0]}\ngoal: {position: [9.0, 5.0]}\n"

@@ -403,6 +403,7 @@ def test_a_run_that_failed_where_there_was_a_way_weighs_nothing():
     assert result.outcome == "timeout"
     assert result.shortest_path_m == pytest.approx(3.8)
     assert result.spl == 0.0
+    assert "no_shortest_path" not in result.model_dump()
 
 
 def test_where_there_is_no_way_there_is_nothing_to_weigh_by():
@@ -411,6 +412,7 @@ def test_where_there_is_no_way_there_is_nothing_to_weigh_by():
     assert result.outcome != "goal"
     assert result.shortest_path_m is None
     assert result.spl is None
+    assert result.model_dump()["no_shortest_path"] == "there is no way"
 
 
 @pytest.mark.parametrize(
@@ -425,6 +427,7 @@ def test_among_too_many_obstacles_nobody_waits_for_the_shortest_path(item, each,
         result = result_of(replace(trajectory, scenario=task))
         assert (result.shortest_path_m, result.spl) == (None, None)
     assert len(asked) == 1
+    assert result.no_shortest_path == "not looked for among more than 1500 corners and cylinders"
 
 
 def test_decisions_may_come_more_often():

@@ -6,12 +6,14 @@ import math
 import sys
 
 ROOM = 0.45  # distance (m) at which something ahead begins to slow the robot
+BESIDE = 0.9  # distance (m) from the robot's side within which a direction is the worse for it
 
 
 def main() -> None:
     """Answer every line until there are no more."""
     greeting = json.loads(sys.stdin.readline())
     robot, angles = greeting["robot"], greeting["rays"]
+    wide = robot["radius"] + BESIDE
     for line in sys.stdin:
         seen = json.loads(line)
         x, y = seen["position"]
@@ -21,7 +23,7 @@ def main() -> None:
         costs = []  # far from the goal's direction is bad, and so is what stands near
         for k, one in enumerate(angles):
             near = min(rays[(k + j) % len(rays)] for j in range(-5, 6))
-            costs.append(abs(math.remainder(one - bearing, math.tau)) + 4.0 * max(0.0, 1.1 - near))
+            costs.append(abs(math.remainder(one - bearing, math.tau)) + 4.0 * max(0.0, wide - near))
         angle = math.remainder(angles[costs.index(min(costs))], math.tau)
         if abs(angle - bearing) < math.tau / len(angles):
             angle = bearing

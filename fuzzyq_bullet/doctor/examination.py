@@ -10,6 +10,7 @@ import numpy as np
 from fuzzyq_bullet.doctor.finding import Finding
 from fuzzyq_bullet.doctor.luck import examine_luck
 from fuzzyq_bullet.doctor.sight import examine_sight
+from fuzzyq_bullet.doctor.touch import examine_touch
 from fuzzyq_bullet.metrics import has_way
 from fuzzyq_bullet.physics.inspection import Inspection
 from fuzzyq_bullet.problems import Loc
@@ -27,8 +28,11 @@ def examine(given: Scenario) -> list[Finding]:
     """
     scenario = realise(given)
     listed = len(given.obstacles)
+    alone = list(examine_sight(scenario, listed))
+    told = {one.loc for one in alone if one.wrong}
     return [
-        *examine_sight(scenario, listed),
+        *alone,
+        *(one for one in examine_touch(scenario, listed) if one.loc not in told),
         *examine_turn(scenario),
         *examine_reach(scenario),
         *examine_luck(scenario, listed),

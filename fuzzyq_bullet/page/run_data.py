@@ -82,11 +82,21 @@ def _field(trajectory: Trajectory) -> dict[str, Any]:
             "radius": scenario.goal.radius,
             "heading": scenario.goal.heading,
         },
-        "via": [{"position": list(one.position), "radius": one.radius} for one in scenario.via],
+        "via": [
+            {"position": list(one.position), "radius": one.radius, "passed": passed}
+            for one, passed in zip(scenario.via, _passed(trajectory), strict=True)
+        ],
         "obstacles": [
             {"corners": _numbers(points, 3), "radius": _number(radius)} for points, radius in solids
         ],
     }
+
+
+def _passed(trajectory: Trajectory) -> list[float | None]:
+    """Return when each via point was passed (s); None for those that never were."""
+    first = np.searchsorted(trajectory.via_passed, np.arange(1, len(trajectory.scenario.via) + 1))
+    times = trajectory.ticks.time
+    return [_number(times[k]) if k < len(times) else None for k in first.tolist()]
 
 
 def _ticks(trajectory: Trajectory) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import shutil
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
@@ -22,6 +23,9 @@ _Number: TypeAlias = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 _Word: TypeAlias = Annotated[str, Strict(), Field(max_length=4096, pattern=r"^[^\x00]*$")]
 LINE_ANGLE = math.radians(45.0)
 """Angle of the left and right lines from the middle one (rad)."""
+
+_SCRIPTS = {".py", ".pl", ".rb", ".js", ".mjs", ".ts", ".sh", ".lua", ".jl", ".r", ".php", ".jar"}
+"""How the names of programs end that an interpreter runs."""
 
 
 class Rays(BaseModel):
@@ -74,7 +78,7 @@ class ProcessPlanner:
         rng: Gives the program its seed.
 
     Raises:
-        UserError: If there is no command, or no such program.
+        UserError: If there is no command, no such program, or no such script for it.
     """
 
     def __init__(self, settings: ProcessSettings, rng: np.random.Generator) -> None:
@@ -87,6 +91,11 @@ class ProcessPlanner:
             if Path(settings.command[0]).is_file():
                 raise UserError(f"command: {program}: is not executable: chmod +x makes it so")
             raise UserError(f"command: {program}: there is no such program")
+        if (script := _missing_script(settings.command[1:])) is not None:
+            raise UserError(
+                f"command: {script!r}: there is no such file; what begins with ./ is looked "
+                "for beside the scenario"
+            )
         self._settings = settings
         self._angles = settings.rays.angles()
         self._seed = int(rng.integers(2**31))
@@ -157,3 +166,17 @@ class ProcessPlanner:
             rays=rays.tolist(),
         )
         return seen, lines
+
+
+def _missing_script(words: tuple[str, ...]) -> str | None:
+    """Return the argument that names a script which is not there; None if there is none.
+
+    That is one that ends like a script, or the first if it is a path: other paths may be files that
+    the program is to write.
+    """
+    for i, word in enumerate(words):
+        is_path = i == 0 and "/" in word and not word.startswith("-")
+        is_script = is_path or Path(word).suffix.lower() in _SCRIPTS
+        if is_script and not os.path.exists(word):  # noqa: PTH110 – takes a name of any length
+            return word
+    return None

@@ -6,7 +6,6 @@ from fuzzyq_bullet.scenario.expectations import Expect, OutcomeName, register_ex
 from fuzzyq_bullet.scenario.files import (
     bundled_scenarios,
     dump_scenario,
-    find_scenario,
     load_scenario,
     parse_scenario,
     save_scenario,
@@ -16,6 +15,7 @@ from fuzzyq_bullet.scenario.models import Drive, Limits, Scenario, scenario_sche
 from fuzzyq_bullet.scenario.options import cellular_task, random_task, with_options
 from fuzzyq_bullet.scenario.places import Arena, Goal, Start, Via
 from fuzzyq_bullet.scenario.robot import Robot
+from fuzzyq_bullet.scenario.sources import find_scenario
 from fuzzyq_bullet.shapes import Box, Cylinder, Obstacle
 
 __all__ = [

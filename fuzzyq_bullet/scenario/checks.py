@@ -116,14 +116,21 @@ def _named(scenario: Scenario) -> list[tuple[str, Loc, Start | Via | Goal]]:
 def _obstacles(scenario: Scenario) -> list[Conflict]:
     field, radius = Field.of(scenario.obstacles), scenario.robot.radius
     by_index: dict[int, Conflict] = {}
-    # Of several places in one obstacle the start is told, then the goal.
-    for name, _, place in reversed(_named(scenario)):
+    at_via: dict[Loc, Conflict] = {}
+    # Of several places in one obstacle the start is told, then the goal; a via point by itself.
+    for name, key, place in reversed(_named(scenario)):
         x, y = place.position
         gaps = field.distances(place.position)
         for i in np.flatnonzero(gaps <= radius + TOUCH).tolist():
             if moves(scenario.obstacles[i]):  # it may go there, and begin elsewhere
                 continue
-            where = f"{-gaps[i]:.3g} m inside it" if gaps[i] < 0 else f"{gaps[i]:.3g} m from it"
+            where = f"{-gaps[i]:.3g} m inside" if gaps[i] < 0 else f"{gaps[i]:.3g} m from"
+            if key[0] == "via":
+                loc = (*key, "position")
+                message = f"is {where} obstacles[{i}], a {scenario.obstacles[i].shape}; "
+                at_via.setdefault(loc, (loc, message + _remedy(gaps[i], radius)))
+                continue
+            where += " it"
             message = f"overlaps the {name} at ({x:g}, {y:g}), which is {where}; "
             message += _remedy(gaps[i], radius)
             by_index[i] = (("obstacles", i), message)
@@ -134,7 +141,7 @@ def _obstacles(scenario: Scenario) -> list[Conflict]:
                     ("obstacles", i, "position"),
                     f"is wholly outside the walls of {_in_words(scenario.arena)}",
                 )
-    return [by_index[i] for i in sorted(by_index)]
+    return [*(by_index[i] for i in sorted(by_index)), *reversed(at_via.values())]
 
 
 def _range(scenario: Scenario) -> list[Conflict]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import yaml
@@ -23,7 +22,6 @@ from fuzzyq_bullet.planning.registry import (
     settings_for,
 )
 from fuzzyq_bullet.planning.settings import PolicySettings, RoutineSettings
-from fuzzyq_bullet.platforms import data_folder
 from fuzzyq_bullet.problems import Problem, lines_of
 from fuzzyq_bullet.quantities import MAX_OBSTACLES
 from fuzzyq_bullet.scenario.checks import find_conflicts
@@ -32,11 +30,16 @@ from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import MAX_WORDED, problems_of
 from fuzzyq_bullet.scenario.robot import Robot, with_robot_in
+from fuzzyq_bullet.scenario.sources import (
+    Source,
+    bundled_paths,
+    find_scenario,
+    refuse_keys,
+    refuse_suffix,
+)
 from fuzzyq_bullet.shapes.trace import with_trace_in
-from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
+from fuzzyq_bullet.wording import error_in_words, shorten
 from fuzzyq_bullet.yaml_tree import Node, read_tree
-
-Source: TypeAlias = "str | os.PathLike[str]"
 
 MAX_BYTES = 2_000_000
 """Largest scenario file: 10 000 boxes, one a line, take about 0.8 MB."""
@@ -56,6 +59,7 @@ def load_scenario(source: Source, *, policies: bool = True) -> Scenario:
             ``path:line: key.path: what is wrong; what is allowed``.
     """
     path = find_scenario(source)
+    refuse_suffix(path)
     return parse_scenario(
         _read(path),
         str(path),
@@ -99,6 +103,7 @@ def parse_scenario(
     try:
         scenario = Scenario.model_validate(data)
     except ValidationError as error:
+        refuse_keys(text, where)
         problems = problems_of(error, tree.data)
         more = max(0, error.error_count() - MAX_WORDED)
     except Exception as error:  # of the settings of a planner of the user's own
@@ -228,37 +233,9 @@ def _policy_problem(scenario: Scenario, *, planner_is_given: bool, sound: bool) 
     return None
 
 
-def find_scenario(source: Source) -> Path:
-    """Return the path of a scenario given as a path or as the name of a bundled one.
-
-    Raises:
-        UserError: If there is neither, or the path is not that of a regular file.
-    """
-    path = Path(source)
-    try:
-        if path.is_file():
-            return path
-        bundled = {p.stem: p for p in sorted(data_folder("scenarios").glob("*.yaml"))}
-        if str(source) in bundled:
-            return bundled[str(source)]
-        if path.is_dir():
-            raise UserError(f"{path}: is a folder; give a scenario file")
-        if path.exists():
-            raise UserError(f"{path}: is not a regular file; give a scenario file")
-    except (OSError, ValueError) as error:  # no access, a name too long, a null byte
-        reason = getattr(error, "strerror", None) or error
-        raise UserError(f"{shorten(str(source))}: cannot be read: {reason}") from error
-    hint = did_you_mean(path.stem, bundled)
-    raise UserError(
-        f"{path}: there is no such file and no bundled scenario of that name; "
-        f"{hint}bundled: {', '.join(bundled)}"
-    )
-
-
 def bundled_scenarios() -> dict[str, str]:
     """Return the description of each bundled scenario, by name, in alphabetical order."""
-    paths = sorted(data_folder("scenarios").glob("*.yaml"))
-    return {path.stem: load_scenario(path).description for path in paths}
+    return {name: load_scenario(path).description for name, path in bundled_paths().items()}
 
 
 def dump_scenario(scenario: Scenario, *, defaults: bool = True) -> str:

@@ -39,6 +39,8 @@ def reason(trajectory: Trajectory, index: int) -> str:
     """Return why decision ``index`` heads where it does."""
     if index == NO_DECISION:
         return "Waits for its first decision"
+    if ends := _ends(trajectory, index):
+        return ends
     decisions = trajectory.decisions
     mode = MODES[int(decisions.mode[index])]
     if makes_way := _makes_way(trajectory, index):
@@ -169,6 +171,21 @@ def _waits(trajectory: Trajectory, index: int, lean: float) -> str:
     if abs(math.remainder(float(decisions.heading[index]) - facing, math.tau)) > _FACING:
         return "No room for a wide turn: turns on the spot"
     return "No room yet to turn so far: slows down" if held else ""
+
+
+def _ends(trajectory: Trajectory, index: int) -> str:
+    """Return what the robot does in the goal, where no decision moves its wheels any more."""
+    scenario, tick = trajectory.scenario, int(trajectory.decisions.tick[index])
+    goal, passed = scenario.goal, int(trajectory.via_passed[tick])
+    away = math.dist(trajectory.ticks.position[tick].tolist(), goal.position)
+    if scenario.drive != "wheels" or not goal.stop or passed < len(scenario.via):
+        return ""
+    if away > goal.radius:
+        return ""
+    if goal.heading is None:
+        return "In the goal: stops"
+    off = math.remainder(goal.heading - float(trajectory.ticks.heading[tick]), math.tau)
+    return f"In the goal: {'stops' if abs(off) <= goal.tolerance else 'turns to its heading'}"
 
 
 def _makes_way(trajectory: Trajectory, index: int) -> str:

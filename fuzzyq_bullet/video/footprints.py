@@ -27,6 +27,12 @@ def corridor(origin: tuple[float, float], heading: float, length: float, radius:
     return np.concatenate([origin + side, tip, origin - side])
 
 
+def circle(centre: tuple[float, float], radius: float) -> Floats:
+    """Return 49 points (m) of a circle, closed: the last is the first."""
+    angle = np.linspace(0.0, math.tau, 49)
+    return np.asarray(np.stack([np.cos(angle), np.sin(angle)], axis=1) * radius + centre)
+
+
 def arrow(origin: tuple[float, float], heading: float, size: float) -> Floats:
     """Return an arrow head (m) that points along ``heading``, its middle at ``origin``."""
     cos, sin = math.cos(heading), math.sin(heading)

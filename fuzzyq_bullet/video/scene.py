@@ -13,7 +13,7 @@ from PIL import Image, ImageChops, ImageDraw
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera
 from fuzzyq_bullet.video import meshes, paint, style
 from fuzzyq_bullet.video.cameras import Camera, FixedCamera
-from fuzzyq_bullet.video.footprints import pointer
+from fuzzyq_bullet.video.footprints import circle, pointer
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.shots import SPAN, Shot
@@ -86,6 +86,7 @@ class Scene:
         self._trail = Trail(still, positions, self._seen, ground, self._unit)
         self._sensed: Sensed | None = None
         self._aim: tuple[float, float] | None = None
+        self._passed = 0
         away = math.dist(lens.eye, lens.target)
         self._steady = Steady(lens.pixels_per_radian() / away)
         self._stains: list[tuple[style.Colour, paint.Layer]] = []
@@ -113,6 +114,7 @@ class Scene:
         unit, size = self._unit, self.lens.size
         grown = paint.joined(
             [
+                self._mark_passed(moment.tick),
                 self._trail.follow(moment.tick),
                 self._point_at(None if sensed is None else sensed.aim),
             ]
@@ -171,6 +173,14 @@ class Scene:
         """
         _, top, _, bottom = self._window or (0, 0, *self.lens.size)
         return float(np.nan_to_num(self._seen([position])[0, 1]) - top) / (bottom - top)
+
+    def _mark_passed(self, tick: int) -> paint.Box | None:
+        """Fill the rings of the via points that were passed by a tick."""
+        before, self._passed = self._passed, int(self._trajectory.via_passed[tick])
+        via = self._trajectory.scenario.via[before : self._passed]
+        layers = [self._stain(circle(one.position, one.radius), edge=0, fill=110) for one in via]
+        filled = [(style.GOAL, layer) for layer in layers if layer is not None]
+        return self._trail.lay_above(filled) if filled else None
 
     def _point_at(self, aim: tuple[float, float] | None) -> paint.Box | None:
         """Mark the aim (m)."""
@@ -273,8 +283,7 @@ def _decorated(
         return lens.project(np.column_stack([flat, np.zeros(len(flat))]))
 
     def ring(centre: tuple[float, float], radius: float) -> Floats:
-        angle = np.linspace(0.0, 2 * np.pi, 49)
-        return seen(np.stack([np.cos(angle), np.sin(angle)], axis=1) * radius + centre)
+        return seen(circle(centre, radius))
 
     area = meshes.ground_seen(lens)
     low, high = area.min(axis=0), area.max(axis=0)

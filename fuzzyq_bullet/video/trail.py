@@ -84,10 +84,9 @@ class Trail:
         """
         if tick <= self._tick:
             return None
-        ends = self._project(self._positions[[self._tick, tick]])
-        if np.abs(ends[1] - ends[0]).max() < _STEP:
-            return None
         points = self._project(self._positions[self._tick : tick + 1])
+        if np.abs(points - points[0]).max() < _STEP:  # all of it: it may have come back
+            return None
         self._tick = tick
         piece = paint.layer(
             points,

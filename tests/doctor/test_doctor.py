@@ -6,14 +6,22 @@ import json
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+import numpy as np
 import pytest
 
 from fuzzyq_bullet.cli.app import app
 from fuzzyq_bullet.doctor import Finding, examine
+from fuzzyq_bullet.doctor.examination import examine_turn
+from fuzzyq_bullet.doctor.touch import examine_touch
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.scenario import Scenario, bundled_scenarios, load_scenario
+from fuzzyq_bullet.shapes import ConvexShape
+from fuzzyq_bullet.shapes.base import Collision, Floats
+
+CART = Path(__file__).parents[2] / "examples" / "robots" / "cart.urdf"
 
 
 def findings(**told: Any) -> list[Finding]:
@@ -86,6 +94,129 @@ def test_a_niche_in_which_a_rectangular_body_cannot_turn_is_found() -> None:
     wide = [box(1, 5.6, 0.8, 0.3), box(1, 4.4, 0.8, 0.3)]
     found = findings(robot=robot, start={"position": [1, 5], "heading": 0.0}, obstacles=wide)
     assert "turn" not in [one.kind for one in found]
+
+
+class Block(ConvexShape):
+    """A square prism as a plugin may have it; nobody registers it."""
+
+    shape: Literal["block"] = "block"
+    half: float = 0.3
+
+    def polygon(self) -> list[tuple[float, float]]:
+        (x, y), a = self.position, self.half
+        return [(x - a, y - a), (x + a, y - a), (x + a, y + a), (x - a, y + a)]
+
+
+class SeenBeside(Block):
+    def faces(self) -> Floats:
+        return np.add(super().faces(), (0.5, 0.0))
+
+
+class Unseen(Block):
+    """Its rays meet a small core only, they pass over the rest."""
+
+    def faces(self) -> Floats:
+        return np.array(self.position) + (super().faces() - self.position) / 10.0
+
+
+class Aloft(Block):
+    """Its solid hangs above the robot."""
+
+    def collisions(self, height: float) -> list[Collision]:
+        [one] = super().collisions(height)
+        assert one.prism is not None
+        return [Collision("", prism=np.add(one.prism, (0.0, 0.0, height)))]
+
+
+class Needle(Block):
+    """It is thinner than the rays of the sensor are apart, and says that it is not."""
+
+    half: float = 0.01
+
+    def thickness(self) -> float:
+        return 1.0
+
+
+def touched(*obstacles: Block, **told: Any) -> list[Finding]:
+    """What the poses alone tell; the obstacles are of no registered shape."""
+    given = {"name": "s", "start": {"position": [1, 5]}, "goal": {"position": [9, 5]}, **told}
+    scenario = Scenario.model_validate(given).model_copy(update={"obstacles": obstacles})
+    return list(examine_touch(scenario, len(obstacles)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        (SeenBeside, ("the sensor sees something, the nearest solid is", "the body is")),
+        (Unseen, ("mm inside something that the sensor,",)),
+        (Aloft, ("the sensor sees something, the nearest solid is far away",)),
+        (Needle, ("mm inside something that the sensor,",)),
+    ],
+)
+def test_what_is_not_both_seen_and_touched_is_found_from_many_poses(
+    kind: type[Block], words: tuple[str, ...]
+) -> None:
+    found = touched(Block(position=(3.0, 3.0)), kind(position=(6.0, 6.0)))
+    assert [(one.kind, one.loc, one.wrong) for one in found] == [("sight", ("obstacles", 1), True)]
+    assert any(one in found[0].message for one in words)
+
+
+@pytest.mark.slow
+def test_what_poses_cannot_tell_apart_is_no_mismatch() -> None:
+    near = [Block(position=(5.0, 3.0 + k * 0.61)) for k in range(4)]  # 1 cm apart, in a row
+    thin = Block(position=(7.0, 7.0), half=0.011)
+    assert touched(*near, thin, robot={"model": "jackal"}) == []
+
+
+def test_walls_that_rays_do_not_see_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    from fuzzyq_bullet.physics import sensor_world
+
+    monkeypatch.setattr(sensor_world, "meshes", lambda *_: iter(()))
+    [found] = touched(arena={"size": [4, 4]}, start={"position": [1, 1]}, goal={"position": [3, 3]})
+    assert (found.kind, found.loc) == ("sight", ("arena",))
+
+
+def test_a_body_larger_than_the_radius_that_a_plugin_tells_is_found_at_the_start(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    beside = [box(1, 5.35, 0.8, 0.2)]  # 0.25 m from its middle, and the radius is 0.2 m
+    start = {"position": [1, 5], "heading": 0.0}
+    assert findings(start=start, obstacles=beside) == []
+    sled = RobotModel(name="fuzzyq", size=(0.8, 0.3), radius=0.2)
+    monkeypatch.setattr("fuzzyq_bullet.scenario.robot.robot_model", lambda _: sled)
+    found = findings(start=start, obstacles=beside)
+    assert ("turn", ("start", "position")) in [(one.kind, one.loc) for one in found]
+
+
+ARM = """
+  <link name="arm">
+    <inertial><mass value="0.1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/>
+    </inertial>
+    <collision><geometry><box size="0.4 0.04 0.04"/></geometry></collision>
+  </link>
+  <joint name="arm_mount" type="fixed">
+    <parent link="base"/><child link="arm"/><origin xyz="0.3 0 0.1"/>
+  </joint>
+</robot>"""
+
+
+def test_every_link_of_a_urdf_is_the_body_that_turns(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(CART.read_text().replace("</robot>", ARM))
+    beside = [box(1, 5.5, 0.8, 0.2)]  # 0.4 m from its middle: the arm reaches 0.5 m, the base 0.27
+    start = {"position": [1, 5], "heading": 0.0}
+    for robot, found in ((path, ["turn"]), (CART, [])):
+        scenario = Scenario.model_validate(
+            {
+                "name": "s",
+                "start": start,
+                "goal": {"position": [9, 5]},
+                "robot": {"model": str(robot)},
+                "obstacles": beside,
+            }
+        )
+        assert [one.kind for one in examine_turn(scenario)] == found
 
 
 @pytest.mark.parametrize(

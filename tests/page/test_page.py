@@ -494,6 +494,7 @@ def test_a_task_and_a_rectangular_robot_are_on_the_page(browser: Browser, tmp_pa
     run = data_of(page)["runs"][0]
     assert run["field"]["goal"]["heading"] == 1.5
     assert len(run["robot"]["footprint"]) == 4
+    assert [one["passed"] for one in run["field"]["via"]] == [None, None]
     path = tmp_path / "task.html"
     path.write_text(page, encoding="utf-8")
     browser.complaints.clear()

@@ -101,6 +101,12 @@ def test_a_twist_needs_wheels(tmp_path: Path) -> None:
     [
         ("{name: process}", "own.yaml:5: planner: command: names no program"),
         ("{name: process, command: [./nobody]}", "planner.command: .*there is no such program"),
+        (
+            "{name: process, command: [sh, ./missing.py]}",
+            "own.yaml:5: planner.command: '.*/missing.py': there is no such file",
+        ),
+        ("{name: process, command: [sh, ../missing]}", "planner.command: .*there is no such file"),
+        ("{name: process, command: [sh, -u, gone.py]}", "planner.command: 'gone.py': there is no"),
         ("{name: process, command: [sh], rate: 7}", "planner.rate: .*240"),
         ("{name: process, command: [sh], time_limit: 0}", "planner.time_limit: "),
         ("{name: process, command: [sh], rays: {count: -1}}", "planner.rays.count: "),
@@ -114,6 +120,14 @@ def test_a_mistake_in_its_settings_is_told_with_its_line(
     path.write_text("\n".join([*head, f"planner: {settings}"]))
     with pytest.raises(UserError, match=wrong):
         load_scenario(path)
+
+
+@pytest.mark.parametrize("words", ["-c, pass", "-, --log=./out.log", "./own.yaml, ./new.txt"])
+def test_what_a_program_is_to_write_need_not_be_there(tmp_path: Path, words: str) -> None:
+    path = tmp_path / "own.yaml"
+    head = WORLD.format(python="x", more="", drive="wheels").splitlines()[:4]
+    path.write_text("\n".join([*head, f"planner: {{name: process, command: [sh, {words}]}}"]))
+    assert load_scenario(path).planner.name == "process"
 
 
 def test_text_alone_means_the_same_whatever_programs_there_are() -> None:
@@ -147,3 +161,12 @@ def test_nothing_is_left_behind_when_the_run_is_killed(tmp_path: Path, signum: i
 def test_the_examples_reach_the_goal(name: str, fuzzyq: Call) -> None:
     done = fuzzyq("check", CONTROLLERS / f"{name}.yaml", "--jobs", 1)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("model", ["jackal", "husky"])
+def test_the_example_in_python_leads_larger_robots_too(model: str, tmp_path: Path) -> None:
+    text = (CONTROLLERS / "gap.yaml").read_text().replace("./gap.py", str(CONTROLLERS / "gap.py"))
+    path = tmp_path / "gap.yaml"
+    path.write_text(f"{text}robot: {{model: {model}}}\n")
+    assert run(load_scenario(path)).outcome == "goal"

@@ -12,6 +12,7 @@ from fuzzyq_bullet.studies.speed import (
     interleaved,
     median_ratio,
 )
+from fuzzyq_bullet.studies.speed.polygons import polygons
 
 
 def test_the_median_is_that_of_the_pairs_of_a_round():
@@ -43,3 +44,11 @@ def test_the_table_says_what_was_measured_what_is_aimed_at_and_whether_it_is_met
     verdicts = [list(column.cells) for column in as_table(rows).columns]
     assert verdicts[1] == ["45.00", "1.20", "not measured"]
     assert verdicts[3] == ["met", "MISSED", ""]
+
+
+@pytest.mark.slow
+def test_a_large_map_is_read_asked_for_a_way_and_driven_in():
+    driven, loaded, asked = polygons(1, 20)
+    assert all(row.figure > 0.0 for row in (driven, loaded, asked))
+    assert "3024 polygons" in driven.what
+    assert asked.detail == "there is one"

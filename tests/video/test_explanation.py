@@ -14,7 +14,7 @@ import pytest
 from fuzzyq_bullet import episode
 from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.scenario import load_scenario
+from fuzzyq_bullet.scenario import Goal, load_scenario
 from fuzzyq_bullet.trajectory import Collision
 from fuzzyq_bullet.video.captions import Story
 from fuzzyq_bullet.video.compositor import Compositor
@@ -73,6 +73,26 @@ def test_a_clear_way() -> None:
     # What counts is where the aim lies, wherever the robot still faces.
     assert said(0.5) == "Way is clear: straight to the goal"
     assert said(lengths=(1.0, 0.6, 1.0), distance=3.0).startswith("Sides alike")
+
+
+@pytest.mark.parametrize(
+    ("goal", "facing", "said"),
+    [
+        ({"heading": 1.5}, 0.0, "In the goal: turns to its heading"),
+        ({"heading": 1.5}, 1.45, "In the goal: stops"),
+        ({}, 0.0, "In the goal: stops"),
+        ({"stop": False}, 0.0, "Way is clear: straight to the goal"),
+    ],
+)
+def test_in_the_goal_no_decision_moves_the_robot(
+    goal: dict[str, Any], facing: float, said: str
+) -> None:
+    record = told(facing)
+    here = record.ticks.position[0].tolist()
+    for away, sentence in ((0.1, said), (0.5, "Way is clear: straight to the goal")):
+        place = Goal(position=(here[0] + away, here[1]), **goal)
+        there = record.scenario.model_copy(update={"goal": place})
+        assert reason(replace(record, scenario=there), 0) == sentence
 
 
 WAY_OUT: dict[str, Any] = {"mode": 2, "aim": (2.0, 5.0), "target": (2.5, 6.0), "reach": 1.0}

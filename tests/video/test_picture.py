@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder
+from fuzzyq_bullet.scenario.places import Via
 from fuzzyq_bullet.trajectory import Collision, Decisions, Ticks
 from fuzzyq_bullet.video import frame, paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
@@ -317,6 +318,31 @@ def map_at(run: Trajectory, time: float, *before: float) -> np.ndarray[Any, Any]
         if patch is not None:
             image.paste(patch.image, (patch.x, patch.y))
     return pixels(image, MAP)
+
+
+def test_a_robot_that_came_back_to_where_it_was_left_its_way_on_the_map(
+    run: Trajectory,
+) -> None:
+    columns = {name: np.concatenate([one, one[::-1]]) for name, one in vars(run.ticks).items()}
+    columns["time"] = time = np.linspace(0.0, 2.0 * run.ticks.time[-1], 2 * len(run.ticks.time))
+    back = replace(run, ticks=Ticks(**columns))
+    assert count(map_at(back, float(time[-1])), style.PATH) > 100
+
+
+def test_a_via_point_that_was_passed_is_filled_in_the_scene() -> None:
+    plain = scenario(0, 0)
+    via = (Via(position=(4.0, 4.75), radius=0.6),)
+    run = drive(plain.model_copy(update={"via": via}))
+    timeline, scene = Timeline(run), Scene(run)
+    (x, y), image = scene.lens.project(np.array([[4.0, 5.2, 0.0]]))[0], None
+    for time in (0.0, float(run.ticks.time[-1])):
+        region = scene.draw(timeline.at(time), None)
+        assert region is not None
+        image = image or Image.new("RGB", (style.WIDTH, style.HEIGHT), style.PAGE)
+        image.paste(region.image, (region.x, region.y))
+        red, green, _ = image.getpixel((SCENE.x + round(x), SCENE.y + round(y)))
+        assert (green > 1.5 * red) == (time > 0.0)
+    scene.close()
 
 
 def aimed(run: Trajectory, target: float) -> Trajectory:

@@ -57,6 +57,7 @@ export class Field {
     const pen = sharp(this.canvas, width, height);
     pen.drawImage(this.still, 0, 0, width, height);
     drawMovers(pen, this, moment);
+    this.drawPassed(pen, moment);
     this.drawPath(pen, moment);
     if (decision && !(moment.over && this.run.data.outcome === "goal")) this.drawSensed(pen, decision);
     this.drawRobot(pen, moment);
@@ -228,6 +229,7 @@ export class Field {
     const origin = this.at(decision.x, decision.y);
     const radius = this.run.data.robot.radius * this.scale;
     if (decision.lined) {
+      if (this.run.data.robot.footprint) this.drawDisc(pen, origin, radius);
       ["left", "middle", "right"].forEach((name, k) => {
         const angle = -decision.lines[k];
         const length = decision.lengths[k] * this.scale;
@@ -262,6 +264,28 @@ export class Field {
     triangle(pen, tip, -decision.heading, 8 * this.marks);
     if (decision.target.every(Number.isFinite)) this.drawDiamond(pen, this.at(...decision.target));
     if (decision.aim.every(Number.isFinite)) this.drawReticle(pen, this.at(...decision.aim));
+  }
+
+  /** Draw the disc that a robot with another body plans with: its lines are as wide. */
+  drawDisc(pen, at, radius) {
+    pen.strokeStyle = colours().muted;
+    pen.lineWidth = 1.5;
+    pen.setLineDash([4, 4]);
+    disc(pen, at, radius);
+    pen.stroke();
+    pen.setLineDash([]);
+  }
+
+  /** Fill the rings of the via points that were passed by now. */
+  drawPassed(pen, moment) {
+    pen.fillStyle = colours().goal;
+    pen.globalAlpha = 0.35;
+    for (const { position, radius, passed } of this.run.data.field.via) {
+      if (passed === null || moment.time < passed) continue;
+      disc(pen, this.at(...position), Math.max(radius * this.scale, 8 * this.marks));
+      pen.fill();
+    }
+    pen.globalAlpha = 1;
   }
 
   drawReticle(pen, [x, y]) {

@@ -4,6 +4,7 @@ import { fixed, html, say, set, svg } from "./dom.js";
 const WIDTH = 250;
 const HEIGHT = 150;
 const ROBOT = [WIDTH / 2, HEIGHT - 18];
+const RIM = 15; // of the robot's disc
 const LONGEST = 104; // of a line's picture
 const NAMES = ["left", "middle", "right"];
 
@@ -15,13 +16,18 @@ export class Senses {
     this.numbers = NAMES.map((name) => svg("text", { class: `length ${name}` }));
     this.nose = svg("path", { class: "nose", d: "M9 0L-5 6L-5 -6Z" });
     this.facts = html("p", { class: "facts" });
-    const robot = svg("circle", { class: "robot", cx: ROBOT[0], cy: ROBOT[1], r: 15 });
+    // The lines are those of the disc that it plans with; another body lies within that disc.
+    const { footprint, radius } = run.data.robot;
+    const disc = svg("circle", { class: footprint ? "disc" : "robot", cx: ROBOT[0], cy: ROBOT[1], r: RIM });
+    const corners = (footprint ?? []).map(([x, y]) => `${(x * RIM) / radius},${(-y * RIM) / radius}`);
+    this.body = svg("polygon", { class: "robot", points: corners.join(" ") });
     this.picture = svg(
       "svg",
       { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "fan", role: "img", "aria-label": "Free distances" },
       ...this.rest,
       ...this.lines,
-      robot,
+      disc,
+      this.body,
       this.nose,
       ...this.numbers,
     );
@@ -40,7 +46,7 @@ export class Senses {
       const way = [Math.cos(angle), -Math.sin(angle)];
       const part = Math.min(decision.lengths[k] / range, 1);
       const at = (length) => [ROBOT[0] + way[0] * length, ROBOT[1] + way[1] * length];
-      const [inner, tip, end] = [at(15), at(15 + part * (LONGEST - 15)), at(LONGEST)];
+      const [inner, tip, end] = [at(RIM), at(RIM + part * (LONGEST - RIM)), at(LONGEST)];
       set(this.lines[k], { x1: inner[0], y1: inner[1], x2: tip[0], y2: tip[1] });
       set(this.rest[k], { x1: inner[0], y1: inner[1], x2: end[0], y2: end[1] });
       const beyond = at(LONGEST + 18);
@@ -49,7 +55,9 @@ export class Senses {
     });
     const turned = decision.lines[1] - decision.facing;
     const degrees = (turned * 180) / Math.PI - 90;
-    set(this.nose, { transform: `translate(${ROBOT[0]} ${ROBOT[1]}) rotate(${degrees.toFixed(1)})` });
+    for (const part of [this.body, this.nose]) {
+      set(part, { transform: `translate(${ROBOT[0]} ${ROBOT[1]}) rotate(${degrees.toFixed(1)})` });
+    }
     const told = decision.distance !== null;
     say(this.facts, !told ? "" : `d = ${fixed(decision.distance)}, Df = ${fixed(decision.difference)} (in robot radii)`);
   }

@@ -17,6 +17,7 @@ from rich.table import Table
 
 MEASUREMENTS = {
     "episodes": "fuzzyq_bullet.studies.speed.loop:episodes",
+    "a large map": "fuzzyq_bullet.studies.speed.polygons:polygons",
     "the film": "fuzzyq_bullet.studies.speed.film:film",
     "a whole run": "fuzzyq_bullet.studies.speed.film:whole_run",
     "the controller": "fuzzyq_bullet.studies.speed.inference:controller",
