@@ -256,6 +256,13 @@ class Trajectory:
         Raises:
             UserError: If the file cannot be written.
         """
+        # Made in memory first: on a full disk an archive is left open, and complains on its own.
+        archive = self.to_bytes()
+        with written_beside(Path(path)) as part:
+            part.write_bytes(archive)
+
+    def to_bytes(self) -> bytes:
+        """Return the contents of the file that ``save`` writes."""
         meta = {
             "format": FORMAT,
             "version": self.version,
@@ -265,11 +272,9 @@ class Trajectory:
             "scenario": self.scenario.model_dump(mode="json"),
         }
         arrays: dict[str, Any] = {"meta": np.array(json.dumps(meta)), **self._arrays()}
-        # Made in memory first: on a full disk an archive is left open, and complains on its own.
         archive = io.BytesIO()
         np.savez_compressed(archive, **arrays)
-        with written_beside(Path(path)) as part:
-            part.write_bytes(archive.getvalue())
+        return archive.getvalue()
 
     @classmethod
     def load(cls, path: Path | str) -> Trajectory:
