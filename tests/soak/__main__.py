@@ -5,11 +5,11 @@
 A study of every planner, with both drives, in bundled scenarios and random fields, keeps every
 record. Meanwhile its workers and its command are killed at random moments, and its disk is filled
 once; the same command is started again each time. At the end every episode must have one row, every
-record be readable, a sample run again must come to the same digests, the memory be flat, and nothing
-be left behind. ``fuzzyq check`` is treated likewise.
+record be readable, a sample run again must come to the same digests, the memory must be flat, and
+nothing be left behind. ``fuzzyq check`` is treated likewise.
 
-It may be ended at any moment: the same command goes on. Linux alone; only root has a disk to fill, a
-tmpfs. Exit code 1 when something is wrong.
+It may be ended at any moment: the same command goes on. Linux alone; only root has a disk to fill,
+a tmpfs. Exit code 1 when something is wrong.
 """
 
 from __future__ import annotations

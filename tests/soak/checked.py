@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from fuzzyq_bullet import Trajectory, UserError, load_scenario, run, with_options
+from fuzzyq_bullet import load_scenario, run, with_options
 from tests.soak.disturbed import END, ROOT
+from tests.soak.verified import why_unreadable
 from tests.soak.watched import Watched, kill
 
 SCENARIOS = ("boxes", "crowd", "figure-12f", "mixed", "office", "patrol", "rounds", "sparse")
@@ -91,8 +92,4 @@ def _faults_of_digests(verdicts: list[dict[str, Any]], rng: random.Random) -> It
 
 
 def _faults_of_records(records: list[Path]) -> Iterator[str]:
-    for path in records:
-        try:
-            Trajectory.load(path)
-        except UserError as error:
-            yield f"check: {error}"
+    yield from (f"check: {why}" for path in records if (why := why_unreadable(path)))

@@ -7,6 +7,7 @@ import random
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -90,8 +91,10 @@ class Ledger:
             self.lives += 1
         elif what == "ran":
             self.seconds += told
+        elif what == "fault":
+            self.faults.append(told)
         else:
-            {"done": self.done, "fault": self.faults, "sample": self.samples}[what].append(told)
+            {"done": self.done, "sample": self.samples}[what].append(told)
 
 
 class Sweep:
@@ -193,11 +196,9 @@ class Sweep:
         """Fill the disk, wait for the command to notice, make room again; return what it said."""
         with self._filler.open("wb", buffering=0) as file:
             for size in (2**20, 4096, 1):
-                try:
+                with suppress(OSError):  # that is what it is for
                     while file.write(b"\0" * size):
                         pass
-                except OSError:
-                    continue
         deadline = time.monotonic() + PATIENCE
         while watched.process.poll() is None:
             if time.monotonic() > deadline:

@@ -50,13 +50,17 @@ def faults_of_records(folder: Path, jobs: Sequence[Job], rows: dict[Any, Row]) -
     """Yield what is wrong with the records: each can be read, and is of its row's run."""
     for job in jobs:
         path = folder / "records" / f"{job.name}.npz"
-        try:
-            digest = Trajectory.load(path).digest()
-        except UserError as error:
-            yield str(error)
-            continue
-        if digest != rows[job.key].digest:
-            yield f"{path.name}: is of another run than its row"
+        if why := why_unreadable(path, rows[job.key].digest):
+            yield why
+
+
+def why_unreadable(path: Path, digest: str | None = None) -> str:
+    """Return what is wrong with a record: it cannot be read, or has another digest; empty if fine."""
+    try:
+        found = Trajectory.load(path).digest()
+    except UserError as error:
+        return str(error)
+    return "" if digest in (None, found) else f"{path.name}: is of another run than its row"
 
 
 def faults_of_digests(jobs: Sequence[Job], rows: dict[Any, Row], seed: int) -> Iterator[str]:
