@@ -55,7 +55,7 @@ def faults_of_records(folder: Path, jobs: Sequence[Job], rows: dict[Any, Row]) -
 
 
 def why_unreadable(path: Path, digest: str | None = None) -> str:
-    """Return what is wrong with a record: it cannot be read, or has another digest; empty if fine."""
+    """Return what is wrong with a record: unreadable, or of another digest; empty if nothing."""
     try:
         found = Trajectory.load(path).digest()
     except UserError as error:
