@@ -96,7 +96,7 @@ dist: $(READY)
 	done; \
 	diff -r "$$made/dist-one" "$$made/dist-two"; \
 	mv "$$made/dist-one" dist
-	@$(BIN)/uv --quiet tool run twine==6.2.0 check --strict dist/*
+	@$(BIN)/uv --quiet tool run twine==7.0.0 check --strict dist/*
 	@$(BIN)/uv --quiet tool run cffconvert==2.0.0 --validate -i CITATION.cff
 	@sha256sum dist/*
 	@! git grep -n OWNER -- pyproject.toml CITATION.cff action.yml README.md \
