@@ -53,20 +53,23 @@ def page(told: dict[str, tuple[str, str]]) -> str:
     Args:
         told: Of each scenario, how it ended and the digest of the run.
     """
-    return HEAD + "\n".join(entry(load_scenario(name), *told[name]) for name in sorted(told))
+    entries = "\n".join(entry(load_scenario(name), *told[name]) for name in sorted(told))
+    return f'{HEAD}<div class="grid gallery" markdown>\n\n{entries}\n</div>\n'
 
 
 def entry(scenario: Scenario, ended: str, digest: str) -> str:
     """Return the part of the page about a scenario."""
     name = scenario.name
     return (
+        f"<div markdown>\n\n"
         f"<!-- {name}: {ended} {digest} -->\n"
         f"## {name}\n\n"
         f"{scenario.description}\n\n"
         f"![{name}: {ended}, with the planner {scenario.planner.name}]"
         f"(images/gallery/{name}.webp)\n\n"
         f"The planner `{scenario.planner.name}` {ended}.\n\n"
-        f"```sh\nfuzzyq run {name}\n```\n"
+        f"<!-- not run: tests/test_unchanged.py drives every bundled scenario -->\n"
+        f"```sh\nfuzzyq run {name}\n```\n\n</div>\n"
     )
 
 

@@ -4,8 +4,9 @@ A comment in front of a block, which no reader sees, says what else there is to 
 
 - ``<!-- file: NAME -->``: the reader saves the block under this name, and so does the test.
 - ``<!-- not run: REASON -->``: the commands are only read by the command line, and not run.
-- ``<!-- tested with: OPTIONS -->``: the commands are run with these options added.
-- ``<!-- exits with: CODE -->``: the last command of the block ends so.
+- ``<!-- tested with: COMMAND OPTIONS; ... -->``: these commands of ``fuzzyq`` are run with these
+  options added, which make them shorter.
+- ``<!-- exits with: CODE or CODE -->``: commands of the block may end so.
 - ``<!-- printed -->``: the last command printed all lines of the block, but for ``...``.
 
 And anywhere ``<!-- given: NAME = PATH -->``: the reader has a file; the test takes this one.
