@@ -215,5 +215,48 @@ def test_the_versions_that_it_installs_are_those_of_the_lock(tmp_path: Path) -> 
     assert all(re.fullmatch(r"[a-z0-9._-]+==[^ \\]+( ;[^\\]*)?", line) for line in lines)
 
 
+# What the pages say
+
+
+def blocks(page: str) -> list[Any]:
+    """Return what a page shows as YAML."""
+    text = (ROOT / "docs" / "how-to" / page).read_text()
+    return [yaml.safe_load(one) for one in re.findall(r"^```yaml\n(.*?)^```", text, re.M | re.S)]
+
+
+def test_the_workflow_of_the_page_is_three_lines_and_the_inputs_are_there() -> None:
+    workflow, more, _ = blocks("github.md")
+    checkout, ours = workflow["jobs"]["check"]["steps"]
+    assert checkout == {"uses": "actions/checkout@v4"}
+    for step in (ours, *more):
+        assert step["uses"] == f"OWNER/fuzzyq_bullet@v{__version__}"
+        assert step["with"].keys() <= ACTION["inputs"].keys()
+    text = (ROOT / "docs" / "how-to" / "github.md").read_text()
+    told = re.findall(r"^\| `([a-z-]+)` \|.*\| (?:`(.*)` )?\|$", text, re.M)
+    assert dict(told) == {name: one["default"] for name, one in ACTION["inputs"].items()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("goal", "status"), [("[1.4, 0.7]", 0), ("[1.2, 1.5]", 2)])
+def test_the_script_of_the_page_for_gitlab_runs(goal: str, status: int, tmp_path: Path) -> None:
+    (file,) = blocks("gitlab.md")
+    install, *script = file["scenarios"]["script"]
+    assert install.startswith("pip install ")
+    assert install.endswith(f'@v{__version__}"')
+    (tmp_path / "scenarios").mkdir()
+    (tmp_path / "scenarios" / "a.yaml").write_text(SHORT.replace("[1.4, 0.7]", goal))
+    path = f"{FUZZYQ.parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["bash", "-eo", "pipefail", "-c", "\n".join(script)],
+        env={**os.environ, "PATH": path},
+        cwd=tmp_path,
+    )
+    assert done.returncode == status
+    if status == 0:
+        kept = file["scenarios"]["artifacts"]
+        assert (tmp_path / kept["reports"]["junit"]).is_file()
+        assert all((tmp_path / folder).is_dir() for folder in kept["paths"])
+
+
 def test_everything_that_is_published_says_the_same_version() -> None:
     assert yaml.safe_load((ROOT / "CITATION.cff").read_text())["version"] == __version__
