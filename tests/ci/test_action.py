@@ -170,7 +170,8 @@ def words_given(folder: Path, **inputs: str) -> list[str]:
     assert not list(folder.rglob("broken"))
     place = there.outputs["check"]["folder"]
     words = there.said.replace(place, "OUT").removesuffix(">\n").removeprefix("<").split(">\n<")
-    usual = "check --github --junit OUT/check.xml --video failed --out OUT/films".split()
+    usual = ["check", "--github", "--junit", "OUT/check.xml"]
+    usual += ["--video", "failed", "--out", "OUT/films"]
     assert words[: len(usual)] == usual
     return words[len(usual) :]
 
