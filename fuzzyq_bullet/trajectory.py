@@ -308,16 +308,7 @@ class Trajectory:
             raise UserError(f"{path}: {mistake_in_record(error)}") from error
         except ValueError as error:
             raise UserError(f"{path}: damaged record: {error}") from error
-        return cls(
-            scenario=head.scenario,
-            outcome=head.outcome,
-            physics_steps=head.physics_steps,
-            collision=head.collision,
-            ticks=ticks,
-            decisions=decisions,
-            movers=movers,
-            version=head.version,
-        )
+        return cls(**dict(head), ticks=ticks, decisions=decisions, movers=movers)
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
         arrays = {
