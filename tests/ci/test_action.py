@@ -205,6 +205,23 @@ def test_the_cache_is_that_of_pip_and_changes_with_the_versions(tmp_path: Path) 
     assert re.fullmatch(rf"fuzzyq-Linux-X64-{re.escape(version)}-[0-9a-f]{{64}}", told["key"])
 
 
+@pytest.mark.slow
+def test_what_is_installed_already_is_used_again_unless_with_another_python(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PIP_NO_INDEX", "1")  # so that nothing is installed, and it fails instead
+    monkeypatch.setenv("PIP_FIND_LINKS", "")
+    there = runner(tmp_path)
+    ready = tmp_path / "temporary" / "fuzzyq" / "ready"
+    ready.write_text(sys.executable)
+    assert there.step("install") == 0, there.said
+    assert there.step("check") == 0, there.said
+    ready.write_text("/another/python")
+    assert there.step("install") == 1
+    assert not ready.exists()
+    assert (ready.parent / "bin" / "python").exists()
+
+
 def test_the_versions_that_it_installs_are_those_of_the_lock(tmp_path: Path) -> None:
     (install,) = (step["run"] for step in STEPS if "constraint" in step.get("run", ""))
     (sed,) = re.findall(r"sed .* \"\$GITHUB_ACTION_PATH/requirements.lock\"", install)
