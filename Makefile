@@ -26,7 +26,7 @@ SUITABLE := import sys, venv, ensurepip; sys.exit(sys.implementation.name != "cp
 	or not (3, 10) <= sys.version_info[:2] <= (3, 13))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all lint format policies lock clean
+.PHONY: help setup demo test test-all lint format docs gallery policies lock soak dist clean
 
 help:
 	@echo 'make demo    drive a scenario and film it: $(OUT)/mixed.mp4'
@@ -34,9 +34,13 @@ help:
 	@echo 'make test-all  run those too that take long: kills, hangs, films, wheels, other Pythons'
 	@echo 'make lint    check style and types'
 	@echo 'make format  put the style right where that can be done without thought'
+	@echo 'make docs    build the site of docs/ into $(OUT)/docs; a broken link fails'
+	@echo 'make gallery drive the bundled scenarios that changed, for docs/gallery.md'
 	@echo 'make setup   only install; all of the above do so first where it is needed'
 	@echo 'make policies  train again what assets/policies holds, to the same bytes'
 	@echo 'make lock    resolve the dependencies anew into requirements.lock'
+	@echo 'make soak    disturb 2000 episodes at random and see that nothing is lost: about an hour'
+	@echo 'make dist    build what is published into dist, twice, and check it'
 	@echo 'make clean   remove .venv, .venvs and what tools left behind; videos in $(OUT) stay'
 	@echo 'All take PYTHON=/path/to/python3.12 (3.10 to 3.13); without it the newest there is.'
 
@@ -59,6 +63,16 @@ lint: $(READY)
 format: $(READY)
 	@$(BIN)/ruff check --fix-only .
 	@$(BIN)/ruff format .
+	@$(BIN)/python docs/tools/code_links.py
+	@$(BIN)/python docs/tools/figures.py
+
+# MkDocs 1.6 tells of its successors at length with each build, unless it is asked not to.
+docs: $(READY)
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --site-dir "$(abspath $(OUT))/docs"
+	@echo "$(OUT)/docs/index.html"
+
+gallery: $(READY)
+	@$(BIN)/python docs/tools/gallery.py
 
 # The commands are the package's to say; each policy then takes the place of the one before. A change
 # in it shows in git. Trained anew each time: a checkpoint knows the version, and not the code.
@@ -75,10 +89,30 @@ policies: $(READY)
 
 # Versions and hashes alone: where packages come from is for whoever installs them to say.
 lock: $(READY)
-	@$(BIN)/uv pip compile pyproject.toml --extra test --extra lint --output-file requirements.lock \
+	@$(BIN)/uv pip compile pyproject.toml --extra test --extra lint --extra docs --output-file requirements.lock \
 		--universal --python-version 3.10 --generate-hashes --upgrade --quiet \
 		--no-emit-index-url --no-emit-find-links --no-annotate --no-header
 	@! grep -nE '://|^ *-(-index|-extra-index|-find-links|i|f)' requirements.lock
+
+soak: $(READY)
+	@$(BIN)/python -m tests.soak --out "$(OUT)/soak" $(ARGS)
+
+# From what is committed, in two folders: whoever builds the same commit must get the same bytes. uv
+# gets the checkers, which nothing else needs, and keeps them out of .venv.
+dist: $(READY)
+	@rm -rf dist
+	@set -e; made=$$(mktemp -d); trap 'rm -rf "$$made"' EXIT; \
+	for copy in one two; do \
+		mkdir "$$made/$$copy"; git archive HEAD | tar -x -C "$$made/$$copy"; \
+		$(BIN)/python -m build --no-isolation --outdir "$$made/dist-$$copy" "$$made/$$copy" >/dev/null; \
+	done; \
+	diff -r "$$made/dist-one" "$$made/dist-two"; \
+	mv "$$made/dist-one" dist
+	@$(BIN)/uv --quiet tool run twine==7.0.0 check --strict dist/*
+	@$(BIN)/uv --quiet tool run cffconvert==2.0.0 --validate -i CITATION.cff
+	@sha256sum dist/*
+	@! git grep -n OWNER -- pyproject.toml CITATION.cff docs/how-to \
+		|| echo 'OWNER still stands there for the account that publishes it'
 
 clean:
 	rm -rf $(VENV) .venvs build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -30,6 +30,13 @@ class SensorError(UserError):
     """A sensor model raised, or told what cannot be a length; says which one."""
 
 
+class MachineError(UserError):
+    """The machine failed, as with a full disk: nothing is wrong with what was asked.
+
+    Nothing is concluded from it, so that the same can be done again when there is room.
+    """
+
+
 class Stopped(BaseException):
     """A signal asked the process to end: Ctrl-C, ``kill``, or its terminal went away.
 

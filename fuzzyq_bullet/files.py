@@ -11,12 +11,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.errors import MachineError, UserError
 
 _BINARY = getattr(os, "O_BINARY", 0)
 """Without it Windows would change line ends."""
 _owner = ""
-"""What stands in the names of all that this process writes beside."""
+"""What stands in the names of all that this process writes beside, or for a while."""
 
 
 @contextmanager
@@ -151,8 +151,27 @@ def refuse_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
                     )
 
 
+@contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """Yield a folder for files that are needed within the block alone.
+
+    Raises:
+        MachineError: If it cannot be made or written to, as on a full disk.
+    """
+    import tempfile  # which takes long to load
+
+    try:
+        with tempfile.TemporaryDirectory(prefix=f"fuzzyq-{_owner}") as folder:
+            yield Path(folder)
+    except OSError as error:
+        where = error.filename or "the folder of temporary files"
+        raise MachineError(f"{where}: cannot be written: {error.strerror or error}") from error
+
+
 def own_parts(owner: str) -> None:
     """Mark all that this process writes beside, so that ``remove_parts`` finds it and no other's.
+
+    Its temporary folders too, for ``remove_temporary``.
 
     Args:
         owner: Letters and digits that no other process uses.
@@ -170,6 +189,18 @@ def remove_parts(path: Path, owner: str) -> None:
     """
     for part in path.parent.glob(f".{glob.escape(path.name)}.{owner}*.part"):
         _remove(part)
+
+
+def remove_temporary(owner: str) -> None:
+    """Remove the temporary folders that a process left when it was killed.
+
+    Args:
+        owner: What the process called itself in ``own_parts``.
+    """
+    import tempfile
+
+    for left in Path(tempfile.gettempdir()).glob(f"fuzzyq-{glob.escape(owner)}*"):
+        _remove(left)
 
 
 @contextmanager

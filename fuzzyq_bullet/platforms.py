@@ -6,6 +6,7 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -57,13 +58,21 @@ def no_screen() -> str:
     return "" if has_opengl else f"the X server at DISPLAY={name} has no OpenGL"
 
 
-def end_with(parent: int) -> None:
-    """End this process when its parent ends, even by ``kill -9``."""
+def end_with(parent: int, last: Callable[[], None] = lambda: None) -> None:
+    """End this process when its parent ends, even by ``kill -9``.
+
+    Args:
+        parent: Its parent.
+        last: Called before that.
+    """
 
     def watch() -> None:
         while os.getppid() == parent:
             time.sleep(0.5)
-        os._exit(1)
+        try:
+            last()
+        finally:
+            os._exit(1)
 
     threading.Thread(target=watch, name="watch-parent", daemon=True).start()
 

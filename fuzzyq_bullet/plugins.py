@@ -75,8 +75,11 @@ def _module_name(path: Path) -> str:
     if _is_of(sys.modules.get(path.stem), path):
         return path.stem
     taken = path.stem in sys.modules or path.stem in sys.stdlib_module_names
-    if not taken and path.stem.isidentifier() and importlib.util.find_spec(path.stem) is None:
-        return path.stem
+    if not taken and path.stem.isidentifier():
+        spec = importlib.util.find_spec(path.stem)
+        # In a worker its folder is on the path already, and it must be the same module there.
+        if spec is None or (spec.origin and Path(spec.origin).resolve() == path.resolve()):
+            return path.stem
     where = hashlib.sha256(str(path.resolve()).encode()).hexdigest()[:8]
     return f"fuzzyq_plugin_{where}_{path.stem}"
 

@@ -256,6 +256,13 @@ class Trajectory:
         Raises:
             UserError: If the file cannot be written.
         """
+        # Made in memory first: on a full disk an archive is left open, and complains on its own.
+        archive = self.to_bytes()
+        with written_beside(Path(path)) as part:
+            part.write_bytes(archive)
+
+    def to_bytes(self) -> bytes:
+        """Return the contents of the file that ``save`` writes."""
         meta = {
             "format": FORMAT,
             "version": self.version,
@@ -265,11 +272,9 @@ class Trajectory:
             "scenario": self.scenario.model_dump(mode="json"),
         }
         arrays: dict[str, Any] = {"meta": np.array(json.dumps(meta)), **self._arrays()}
-        # Made in memory first: on a full disk an archive is left open, and complains on its own.
         archive = io.BytesIO()
         np.savez_compressed(archive, **arrays)
-        with written_beside(Path(path)) as part:
-            part.write_bytes(archive.getvalue())
+        return archive.getvalue()
 
     @classmethod
     def load(cls, path: Path | str) -> Trajectory:
@@ -303,16 +308,7 @@ class Trajectory:
             raise UserError(f"{path}: {mistake_in_record(error)}") from error
         except ValueError as error:
             raise UserError(f"{path}: damaged record: {error}") from error
-        return cls(
-            scenario=head.scenario,
-            outcome=head.outcome,
-            physics_steps=head.physics_steps,
-            collision=head.collision,
-            ticks=ticks,
-            decisions=decisions,
-            movers=movers,
-            version=head.version,
-        )
+        return cls(**dict(head), ticks=ticks, decisions=decisions, movers=movers)
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
         arrays = {

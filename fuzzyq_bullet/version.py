@@ -1,3 +1,3 @@
 """The version of fuzzyq_bullet, written in every record."""
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
+
+from fuzzyq_bullet.files import temporary_folder
 
 
 @contextmanager
@@ -125,9 +126,13 @@ class Engine:
         fixed: bool = True,
         visible: bool = False,
     ) -> int:
-        """Load a body from the text of a URDF, and of the mesh files beside it; return its id."""
-        with tempfile.TemporaryDirectory(prefix="fuzzyq-") as folder:
-            path = Path(folder) / "body.urdf"
+        """Load a body from the text of a URDF, and of the mesh files beside it; return its id.
+
+        Raises:
+            MachineError: If there is no room for temporary files.
+        """
+        with temporary_folder() as folder:
+            path = folder / "body.urdf"
             for name, text in {"body.urdf": urdf, **(meshes or {})}.items():
                 (path.parent / name).write_text(text)
             return self.load(path, fixed=fixed, visible=visible)

@@ -33,8 +33,6 @@ of your own file as well. `fuzzyq schema` prints the JSON Schema itself, for edi
 """
 _ELSEWHERE = {"ControllerDefinition": "a [controller](../how-to/rules.md)"}
 """Models that a page of their own explains."""
-_WITHIN = ("motion", "movers")
-"""Keys within those of an obstacle or a layout that have keys of their own."""
 
 
 def scenario_reference() -> str:
@@ -69,9 +67,9 @@ def _section(key: str, node: Node, models: Mapping[str, Node]) -> Iterable[str]:
     )
     yield ""
     yield _table(_keys_of_all(members, chosen_by, models))
-    for k, inner in members[0]["properties"].items():
-        if k in _WITHIN:
-            yield from _section(k, inner, models)
+    for within, its in {k: v for one in members for k, v in one["properties"].items()}.items():
+        if any("$ref" in one and _referred(one) not in _ELSEWHERE for one in _choices(its)):
+            yield from _section(within, its, models)
 
 
 def _choices(node: Node) -> list[Node]:
@@ -84,7 +82,11 @@ def _choices(node: Node) -> list[Node]:
 
 
 def _model(node: Node, models: Mapping[str, Node]) -> Node:
-    return models[node["$ref"].rsplit("/", 1)[-1]]
+    return models[_referred(node)]
+
+
+def _referred(node: Node) -> str:
+    return str(node["$ref"]).rsplit("/", 1)[-1]
 
 
 def _name(model: Node, chosen_by: str) -> str:
@@ -122,8 +124,7 @@ def _keys_of_all(
 def _allowed(node: Node, key: str) -> str:
     """Say in words what the value of a key may be."""
     if "$ref" in node:
-        name = node["$ref"].rsplit("/", 1)[-1]
-        return _ELSEWHERE.get(name, f"[keys of its own](#{key})")
+        return _ELSEWHERE.get(_referred(node), f"[keys of its own](#{key})")
     for word in ("oneOf", "anyOf"):
         if word in node:
             told = dict.fromkeys(_allowed(one, key) for one in node[word])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import tempfile
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
@@ -12,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from fuzzyq_bullet.episode import run
-from fuzzyq_bullet.errors import PlannerError
+from fuzzyq_bullet.errors import MachineError, PlannerError
 from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.metrics import result_of
@@ -55,6 +54,9 @@ def run_job(job: Job, run: Callable[[Scenario], Trajectory] = run) -> Done:
     Args:
         job: The episode.
         run: What drives it, if not its planner alone.
+
+    Raises:
+        MachineError: If the machine failed it: a row would never be done again.
     """
     way: bool | None = None
     try:
@@ -62,7 +64,9 @@ def run_job(job: Job, run: Callable[[Scenario], Trajectory] = run) -> Done:
         way = feasible(scenario, room_of(scenario))
         trajectory = run(scenario)
         row = Row.of(job, result_of(trajectory), way)
-        return Done(row, _record(trajectory) if way and not row.success else None)
+        return Done(row, trajectory.to_bytes() if way and not row.success else None)
+    except MachineError:
+        raise
     except PlannerError as error:
         return Done(Row.failed(job, str(error), way))
     except Exception as error:
@@ -86,13 +90,6 @@ def work_for_row(order: dict[str, Any]) -> dict[str, Any]:
     The row has the seed, and the digest to know the run by: it can be run again.
     """
     return {**work(order), "record": None}
-
-
-def _record(trajectory: Trajectory) -> bytes:
-    with tempfile.TemporaryDirectory(prefix="fuzzyq-") as folder:
-        path = Path(folder) / "record.npz"
-        trajectory.save(path)
-        return path.read_bytes()
 
 
 @dataclass
@@ -168,7 +165,7 @@ def sweep(
 
     Raises:
         UserError: If the folder holds a sweep with other settings, another process is at work in
-            it, or it cannot be written to.
+            it, it cannot be written to, or the machine fails a worker.
         ValueError: If two jobs have the same key.
     """
     by_key = {job.key: job for job in jobs}

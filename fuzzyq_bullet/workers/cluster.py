@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.errors import MachineError, UserError
 from fuzzyq_bullet.workers.pool import Answer, Function, Pool
 
 PATIENCE = 10.0
@@ -48,6 +48,8 @@ class DaskPool:
                     answer = Answer(future.result())
                 except KilledWorker:
                     answer = Answer(died="killed, out of memory, or crashed in a library")
+                except MachineError:
+                    raise
                 except UserError as error:
                     answer = Answer(failed=error.problems)
                 i = pending.pop(future)

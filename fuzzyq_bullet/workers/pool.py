@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.files import remove_parts
+from fuzzyq_bullet.files import remove_parts, remove_temporary
 from fuzzyq_bullet.platforms import cores
 from fuzzyq_bullet.wording import end_in_words
 from fuzzyq_bullet.workers.process import COMMAND
@@ -141,7 +141,8 @@ class WorkerPool:
             writes: The file that each writes, if any: a half-written one is removed.
 
         Raises:
-            UserError: If no worker can be started, for a plugin that does not load.
+            UserError: If no worker can be started, for a plugin that does not load; or the machine
+                fails one, as with a full disk.
         """
         given = self.timeout if timeout is None else timeout
         waiting = deque(
@@ -283,5 +284,6 @@ class _Worker:
             assert pipe is not None
             with suppress(BrokenPipeError):
                 pipe.close()
+        remove_temporary(self._name)
         if self._writes is not None:
             remove_parts(Path(self._writes), self._name)

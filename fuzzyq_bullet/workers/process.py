@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from fuzzyq_bullet.files import own_parts, remove_temporary
 from fuzzyq_bullet.platforms import end_with
 
 try:
@@ -46,7 +47,7 @@ def main(settings: dict[str, Any]) -> None:
     # What planners and libraries print must not get between the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
-    end_with(settings["parent"])
+    end_with(settings["parent"], lambda: remove_temporary(settings["name"]))
     # No terminal's Ctrl-C comes here, so a KeyboardInterrupt is always a planner's own.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     limit = int(settings["memory_mb"]) * 2**20
@@ -63,8 +64,7 @@ def main(settings: dict[str, Any]) -> None:
 
     from importlib import import_module
 
-    from fuzzyq_bullet.errors import UserError
-    from fuzzyq_bullet.files import own_parts
+    from fuzzyq_bullet.errors import MachineError, UserError
     from fuzzyq_bullet.plugins import load_plugins
 
     own_parts(settings["name"])
@@ -84,6 +84,9 @@ def main(settings: dict[str, Any]) -> None:
         _end_within(int(order["timeout"]) + GRACE)
         try:
             told = {"value": function(order["argument"])}
+        except MachineError as error:  # whatever else is ordered would fail too
+            answer(unable=list(error.problems))
+            return
         except UserError as error:
             told = {"failed": list(error.problems)}
         except MemoryError:

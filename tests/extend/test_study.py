@@ -79,3 +79,37 @@ def test_a_planner_from_a_file_in_another_folder_is_swept(fuzzyq: Call, tmp_path
     (line,) = json.loads(done.stdout)["rows"]
     assert line["drives"]["kinematic"]["errors"] == 0
     assert "died" not in (tmp_path / "here" / "out" / "escape" / "escape.csv").read_text()
+
+
+WORKING = """\
+from fuzzyq_bullet.studies import (
+    FieldsPlan, Findings, Study, described, planners_of, register_study
+)
+from fuzzyq_bullet.studies.sweep import work_for_row
+def work(order):
+    done = work_for_row(order)
+    return {**done, "row": {**done["row"], "error": f"worked in {__name__}"}}
+@register_study
+class Working(Study):
+    name = "working"
+    def planner_set(self):
+        return planners_of("fuzzy")
+    def plan(self):
+        told = described(self.planner_set())
+        return FieldsPlan(sweep=self.name, planners=told, counts=(5,), runs=1)
+    def work(self):
+        return work
+    def findings(self, results):
+        return Findings((), {"said": results[self.name].rows[0].error})
+"""
+
+
+@pytest.mark.slow
+def test_a_study_of_ones_own_may_say_itself_what_a_worker_does(
+    fuzzyq: Call, tmp_path: Path
+) -> None:
+    """The plugin is the same module in the worker, though its folder is on the path there."""
+    (tmp_path / "working.py").write_text(WORKING)
+    done = fuzzyq("bench", "working", "--plugin", "working.py", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == {"said": "worked in working"}

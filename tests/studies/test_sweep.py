@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -9,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -16,6 +18,7 @@ import pytest
 
 from fuzzyq_bullet import Trajectory, UserError, run
 from fuzzyq_bullet.cli.app import call
+from fuzzyq_bullet.errors import MachineError
 from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.scenario import Limits, realise
@@ -179,6 +182,20 @@ def test_a_single_worker_too_is_a_process_of_its_own(tmp_path: Path) -> None:
     with local_pool(1) as pool:
         (row,) = sweep("t", jobs_for(5, 1), tmp_path, {}, pool=pool, work=telling_where).rows
     assert row.steps not in (None, os.getpid())
+
+
+def test_a_full_disk_is_no_row_which_would_never_be_done_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def full(path: Path, text: str) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+
+    job = replace(jobs_for(5, 1, seconds=1.0)[0], drive="wheels")
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(MachineError, match=r"body\.urdf: cannot be written: No space left"):
+        run_job(job)
+    monkeypatch.undo()
+    assert run_job(job).row.outcome == "timeout"
 
 
 # Going on
