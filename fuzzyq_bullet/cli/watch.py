@@ -43,11 +43,13 @@ def watch(
 
     from fuzzyq_bullet import live
     from fuzzyq_bullet.metrics import result_of
+    from fuzzyq_bullet.physics.engine import silenced
     from fuzzyq_bullet.physics.window import WindowClosed
     from fuzzyq_bullet.scenario.expectations import unmet_expectations
 
     try:
-        with redirect_stdout(sys.stderr):  # a planner may print
+        # A planner may print. PyBullet does so when somebody closes its window, whenever it likes.
+        with redirect_stdout(sys.stderr), silenced(1):
             trajectory = live.watch(task, speed=speed)
     except WindowClosed:
         say("closed before the run was over")

@@ -15,7 +15,18 @@ from fuzzyq_bullet.consult import build_planner
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.world import World
-from fuzzyq_bullet.scenario import Arena, Goal, Limits, Random, Scenario, Start, realise
+from fuzzyq_bullet.planning import Decision
+from fuzzyq_bullet.scenario import (
+    Arena,
+    Goal,
+    Limits,
+    Random,
+    Scenario,
+    Start,
+    random_task,
+    realise,
+)
+from fuzzyq_bullet.scenario.layouts import Wanderers
 from fuzzyq_bullet.studies.speed import Row, interleaved, median_ratio
 
 COUNTS = (125, 1000)
@@ -24,6 +35,8 @@ FIELDS = 3
 """Fields of each number."""
 SIMULATED = 20.0
 """Simulated time of one timed episode (s)."""
+MOVING, STANDING = 20, 25
+"""Obstacles that move, or stand as well, beside those that stand."""
 SIDE = math.sqrt(max(COUNTS) / (125 / 100.0))
 """Side of the arena (m) in which 1000 obstacles are as dense as the paper's 125 in 10 × 10 m."""
 
@@ -146,7 +159,53 @@ def episodes(rounds: int, rate: int) -> list[Row]:
             "at most",
             f"longest {1e3 * max(few.decisions):.1f} ms",
         ),
+        _moving(rounds, rate),
     ]
+
+
+def _moving(rounds: int, rate: int) -> Row:
+    """Return what it costs that obstacles move, while the robot stands among them and looks."""
+    works = [_Watch(seed, moves, rate) for moves in (True, False) for seed in range(FIELDS)]
+    for work in works:
+        work()  # the first time much is loaded
+    times = interleaved(works, rounds)
+    seconds = [work.seconds for work in works]
+    moving, standing = (
+        [sum(of_round) / sum(seconds[own]) for of_round in zip(*times[own], strict=True)]
+        for own in (slice(FIELDS), slice(FIELDS, None))
+    )
+    return Row(
+        f"time of a simulated second, {MOVING} of {MOVING + STANDING} obstacles moving",
+        median_ratio(moving, standing),
+        1.5,
+        "at most",
+        f"{1e3 * median(moving):.1f} ms against {1e3 * median(standing):.1f} ms",
+    )
+
+
+class _Watch:
+    """A robot that stands in a field and casts its three lines for each decision.
+
+    Attributes:
+        seconds: Simulated time of the last call (s); a contact ends it.
+    """
+
+    def __init__(self, seed: int, moves: bool, rate: int) -> None:
+        task = random_task(seed, count=STANDING if moves else STANDING + MOVING)
+        if moves and task.random is not None:
+            random = task.random.model_copy(update={"movers": Wanderers(count=MOVING)})
+            task = task.model_copy(update={"random": random})
+        self._scenario, self._rate = realise(task), rate
+        self._world = World(self._scenario.obstacles, self._scenario.arena)
+        self.seconds = 0.0
+
+    def __call__(self) -> None:
+        episode = Episode(self._world, self._scenario, patience=math.inf, rate=self._rate)
+        still = Decision(0.0, 0.0, 0.0, mode="routine")
+        while episode.outcome is None and episode.now.time < SIMULATED:
+            episode.observe().sense((-0.8, 0.0, 0.8))
+            episode.advance(still)
+        self.seconds = episode.now.time
 
 
 def _compare(rounds: int, rate: int) -> list[_LoopTimes]:
