@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.planning import PlannerSettings, settings_for
 from fuzzyq_bullet.scenario import Drive, Limits, Robot, Scenario, cellular_task, random_task
+from fuzzyq_bullet.scenario.layouts import Wanderers
 from fuzzyq_bullet.sensors import ExactSensor
 from fuzzyq_bullet.trajectory import Outcome
 
@@ -66,13 +67,14 @@ class Environment:
 
 
 class Outfit(BaseModel):
-    """What drives through the environments of a sweep instead of their own robot.
+    """What drives through the environments of a sweep instead of their own robot, and what moves.
 
     Attributes:
         robot: Its model; None for that of the environment.
         max_speed: Its greatest speed (m/s); None for that of the model, or of the environment.
         range: How far it sees (m); None for 5·S_p.
         disturbed: What disturbs it: keys of ``sensor`` and ``robot`` in a scenario file.
+        movers: What wanders in its way: keys of ``random.movers``; what stands is the same.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -81,6 +83,7 @@ class Outfit(BaseModel):
     max_speed: float | None = None
     range: float | None = None
     disturbed: dict[str, float] = Field(default_factory=dict)
+    movers: Wanderers | None = None
 
     def on(self, task: Scenario) -> Scenario:
         """Return a scenario with this robot in it.
@@ -95,7 +98,10 @@ class Outfit(BaseModel):
         noise = {key: v for key, v in self.disturbed.items() if key not in slips}
         robot = Robot.model_validate({**own, **model, **given, **slips})
         sensor = ExactSensor.model_validate({"range": self.range, **noise})
-        return task.model_copy(update={"robot": robot, "sensor": sensor})
+        random = task.random
+        if self.movers is not None and random is not None:
+            random = random.model_copy(update={"movers": self.movers})
+        return task.model_copy(update={"robot": robot, "sensor": sensor, "random": random})
 
 
 USUAL = Outfit()
