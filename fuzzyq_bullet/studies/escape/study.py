@@ -113,7 +113,7 @@ class Escape(Study):
 
     name: ClassVar[str] = "escape"
     title: ClassVar[str] = "Out of dead ends"
-    kinds: ClassVar[Mapping[str, type[Plan]]] = {"escape": EscapePlan}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {"escape": EscapePlan}
     width: ClassVar[int] = 100
     kept: ClassVar[bool] = True
 

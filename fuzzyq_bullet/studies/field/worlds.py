@@ -9,11 +9,11 @@ import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.scenario import Goal, Scenario, check
+from fuzzyq_bullet.scenario import Goal, Scenario
 from fuzzyq_bullet.scenario.importers import ImportOptions, import_map, importable, options_of
-from fuzzyq_bullet.sensors import SensorModel
 from fuzzyq_bullet.studies.field.plan import BOUND, World
 from fuzzyq_bullet.studies.options import outfit_of
 from fuzzyq_bullet.untrusted import number
@@ -69,19 +69,20 @@ def worlds_in(asked: Asked) -> Found:
         UserError: If an option is wrong, there is no such folder, or no world in it can be read.
     """
     options, radius = _options(asked)
+    options.robot_model()  # or every world would complain
     found = Found()
     files: dict[str, Path] = {}
     for path in _files(asked.folder):
         try:
             imported = import_map(path, options)
-            world = _equipped(imported.scenario, asked, radius, path)
-            name = world.name
+            name = imported.scenario.name
             if name in files or name == BOUND:
                 other = files.get(name, "the bound")
                 raise UserError(f"{path}: name: {name} is the name of {other} too")
         except UserError as error:
-            found.problems += error.problems
+            found.problems += (_placed(line, path) for line in error.problems)
             continue
+        world = _equipped(imported.scenario, asked, radius)
         files[name] = path
         for line in imported.left_out:
             what = line.rpartition(": ")[0]
@@ -93,6 +94,11 @@ def worlds_in(asked: Asked) -> Found:
     if not found.worlds:
         raise UserError(*found.problems)
     return found
+
+
+def _placed(line: str, path: Path) -> str:
+    """Return a mistake with the file that it is in: not all that read a world know it."""
+    return line if line.startswith(str(path)) else f"{path}: {line}"
 
 
 def _options(asked: Asked) -> tuple[ImportOptions, float | None]:
@@ -125,24 +131,20 @@ def _files(folder: Path) -> Iterable[Path]:
     return files
 
 
-def _equipped(world: Scenario, asked: Asked, radius: float | None, path: Path) -> Scenario:
+def _equipped(world: Scenario, asked: Asked, radius: float | None) -> Scenario:
     """Return a world with the goal and the robot that are asked for.
 
     Raises:
-        UserError: If it cannot have them.
+        UserError: If its robot cannot be so; it names the option.
     """
-    goal = {} if radius is None else {"radius": radius}
-    changed = world.model_copy(
-        update={"goal": Goal.model_validate({**world.goal.model_dump(), **goal})}
-    )
-    try:
-        # The robot's model is there already: the import has seen to it.
-        outfit = outfit_of(None, asked.max_speed, asked.sight or changed.sensor_range, changed)
-    except UserError as error:
-        raise UserError(*(f"{path}: {problem}" for problem in error.problems)) from error
-    sensor: SensorModel = changed.sensor
+    changes: dict[str, Any] = {}
+    if radius is not None:
+        changes["goal"] = Goal.model_validate({**world.goal.model_dump(), "radius": radius})
+    # The robot's model is there already: the import has seen to it.
+    outfit = outfit_of(None, asked.max_speed, asked.sight or world.sensor_range, world)
+    if asked.max_speed is not None:
+        changes["robot"] = outfit.on(world).robot
     if asked.sight is not None:
-        sensor = type(sensor).model_validate({**sensor.model_dump(), "range": asked.sight})
-    changed = changed.model_copy(update={"robot": outfit.on(changed).robot, "sensor": sensor})
-    check(changed)
-    return changed
+        told = {**world.sensor.model_dump(), "range": asked.sight}
+        changes["sensor"] = type(world.sensor).model_validate(told)
+    return world.model_copy(update=changes)

@@ -115,7 +115,7 @@ class Robust(Study):
 
     name: ClassVar[str] = "robust"
     title: ClassVar[str] = "Noise, slip and latency"
-    kinds: ClassVar[Mapping[str, type[Plan]]] = {"robust": RobustPlan}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {"robust": RobustPlan}
     pictured: ClassVar[bool] = True
 
     planners: str = Field("fuzzy-q-lambda", description="Planners, with commas between.")
