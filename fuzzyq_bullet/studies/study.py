@@ -131,8 +131,8 @@ class Study(BaseModel):
     * ``findings`` returns what the rows say: tables, and data for programs.
 
     A study of several sweeps, each planned by what came of those before, overrides ``stages``
-    instead of ``plan`` and ``planner_set``, and has an entry in ``stage_plans`` and ``folders`` for each;
-    ``recalled`` then tells a report how to get from the plans back to the options.
+    instead of ``plan`` and ``planner_set``, and has an entry in ``stage_plans`` and ``folders`` for
+    each; ``recalled`` then tells a report how to get from the plans back to the options.
 
     Attributes:
         name: What the command line and the files call it.

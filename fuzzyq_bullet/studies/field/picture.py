@@ -83,10 +83,13 @@ def _time(axes: Axes, line: Line, place: int) -> None:
         axes.plot(1.0, place, mark, color=colour, ms=6)
         return
     if line.over_bound is None:
-        axes.annotate("–", (1.0, place), (6, 0), textcoords="offset points", va="center", color=GREY)
+        axes.annotate(
+            "–", (1.0, place), (6, 0), textcoords="offset points", va="center", color=GREY
+        )
         return
     value, low, high = (
-        min(one, _MOST) for one in (line.over_bound.value, line.over_bound.low, line.over_bound.high)
+        min(one, _MOST)
+        for one in (line.over_bound.value, line.over_bound.low, line.over_bound.high)
     )
     axes.plot([low, high], [place, place], color=colour, lw=1.5)
     axes.plot(value, place, ">" if line.over_bound.value > _MOST else mark, color=colour, ms=6)

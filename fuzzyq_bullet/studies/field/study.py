@@ -127,15 +127,9 @@ class AgainstField(Study):
         planners = ",".join(plan.planners)
         if isinstance(plan, WorldsPlan):
             return cls.model_validate({"planners": planners, "repeat": plan.repeat, **plan.asked})
-        return cls(
-            planners=planners,
-            kinds=",".join(plan.kinds),
-            runs=plan.runs,
-            seed=plan.seed,
-            robot=plan.outfit.robot,
-            max_speed=plan.outfit.max_speed,
-            range=plan.outfit.range,
-        )
+        told = {"planners": planners, "kinds": ",".join(plan.kinds), "runs": plan.runs}
+        outfit = plan.outfit.model_dump(include={"robot", "max_speed", "range"})
+        return cls.model_validate({**told, "seed": plan.seed, **outfit})
 
     @classmethod
     def usable(cls, results: Results) -> Results | None:
@@ -169,7 +163,9 @@ class AgainstField(Study):
             "settings": dict(swept.settings),
             "lines": [asdict(line) for line in lines],
             "paired": [{**asdict(one), "better": one.better()} for one in pairs],
-            "worlds": [dict(zip(one.columns, cells, strict=True)) for one in each for cells in one.rows],
+            "worlds": [
+                dict(zip(one.columns, cells, strict=True)) for one in each for cells in one.rows
+            ],
         }
         return Findings(
             (*tables, *(each if few else ())),

@@ -142,9 +142,7 @@ def told(one: Estimate | None, form: str) -> str:
     return cell(one if one is None or one.pairs >= FEWEST else one.value, form)
 
 
-def _known(
-    figure: Callable[[list[float]], float], values: Iterable[float | None]
-) -> float | None:
+def _known(figure: Callable[[list[float]], float], values: Iterable[float | None]) -> float | None:
     known = [value for value in values if value is not None]
     return figure(known) if known else None
 

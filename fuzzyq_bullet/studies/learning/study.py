@@ -112,7 +112,10 @@ class Learning(Study):
 
     name: ClassVar[str] = "learning"
     title: ClassVar[str] = "What learning gains"
-    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {"grid": SearchPlan, "comparison": ComparisonPlan}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {
+        "grid": SearchPlan,
+        "comparison": ComparisonPlan,
+    }
     folders: ClassVar[Mapping[str, str]] = {"grid": "grid", "comparison": "comparison"}
     pictured: ClassVar[bool] = True
 
