@@ -6,6 +6,7 @@ from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
+from fuzzyq_bullet.planning.peers.dwa import DwaPlanner, DwaSettings
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.process import ProcessPlanner, ProcessSettings
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS, DirectPlanner
@@ -33,6 +34,8 @@ __all__ = [
     "CommandSettings",
     "Decision",
     "DirectPlanner",
+    "DwaPlanner",
+    "DwaSettings",
     "FuzzyPlanner",
     "FuzzyQLambdaPlanner",
     "FuzzyQLambdaSettings",
@@ -78,3 +81,4 @@ register_planner(
     lambda settings, rng: FuzzyQLambdaPlanner(settings),
 )
 register_planner("process", ProcessSettings, ProcessPlanner)
+register_planner("dwa", DwaSettings, lambda settings, rng: DwaPlanner(settings))
