@@ -7,6 +7,7 @@ from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
 from fuzzyq_bullet.planning.peers.dwa import DwaPlanner, DwaSettings
+from fuzzyq_bullet.planning.peers.vfh import VfhPlanner, VfhSettings
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.process import ProcessPlanner, ProcessSettings
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS, DirectPlanner
@@ -54,6 +55,8 @@ __all__ = [
     "RangeSensor",
     "RoutineSettings",
     "TwistCommand",
+    "VfhPlanner",
+    "VfhSettings",
     "WheelCommand",
     "make_planner",
     "planner_names",
@@ -82,3 +85,4 @@ register_planner(
 )
 register_planner("process", ProcessSettings, ProcessPlanner)
 register_planner("dwa", DwaSettings, lambda settings, rng: DwaPlanner(settings))
+register_planner("vfh", VfhSettings, lambda settings, rng: VfhPlanner(settings))

@@ -110,12 +110,13 @@ class DwaPlanner:
         wide = around.radius + settings.margin
         window = window_of(observation, motion, interval, points, wide)
         told = Decision(0.0, 0.0, aim=observation.goal, target=observation.goal)
-        if not (window.admissible & (window.speeds > CRAWL)[:, None]).any():
+        ahead = window.admissible & (window.speeds > CRAWL)[:, None]
+        if not ahead.any():
             return TwistCommand(0.0, self._turn_away(points, observation) * motion.max_turn_rate,
                                 told._replace(mode="breakout"))
         self._turning = 0.0
         worth = np.where(window.admissible, self._worth(window, observation, motion), 0.0)
-        worth = np.where(window.admissible, _smoothed(worth), -1.0)
+        worth = np.where(ahead, _smoothed(worth), -1.0)
         speed, rate = np.unravel_index(int(np.argmax(worth)), worth.shape)
         return TwistCommand(float(window.speeds[speed]), float(window.rates[rate]), told)
 
