@@ -6,7 +6,9 @@ from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
+from fuzzyq_bullet.planning.peers.apf import ApfPlanner, ApfSettings
 from fuzzyq_bullet.planning.peers.dwa import DwaPlanner, DwaSettings
+from fuzzyq_bullet.planning.peers.tangent_bug import TangentBugPlanner, TangentBugSettings
 from fuzzyq_bullet.planning.peers.vfh import VfhPlanner, VfhSettings
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.process import ProcessPlanner, ProcessSettings
@@ -32,6 +34,8 @@ __all__ = [
     "DEFAULT_PLANNER",
     "MODES",
     "Answer",
+    "ApfPlanner",
+    "ApfSettings",
     "CommandSettings",
     "Decision",
     "DirectPlanner",
@@ -54,6 +58,8 @@ __all__ = [
     "QLearningSettings",
     "RangeSensor",
     "RoutineSettings",
+    "TangentBugPlanner",
+    "TangentBugSettings",
     "TwistCommand",
     "VfhPlanner",
     "VfhSettings",
@@ -86,3 +92,7 @@ register_planner(
 register_planner("process", ProcessSettings, ProcessPlanner)
 register_planner("dwa", DwaSettings, lambda settings, rng: DwaPlanner(settings))
 register_planner("vfh", VfhSettings, lambda settings, rng: VfhPlanner(settings))
+register_planner("apf", ApfSettings, ApfPlanner)
+register_planner(
+    "tangent-bug", TangentBugSettings, lambda settings, rng: TangentBugPlanner(settings)
+)
