@@ -8,6 +8,7 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
 from fuzzyq_bullet.planning.peers.apf import ApfPlanner, ApfSettings
 from fuzzyq_bullet.planning.peers.dwa import DwaPlanner, DwaSettings
+from fuzzyq_bullet.planning.peers.navground import NavgroundPlanner, NavgroundSettings
 from fuzzyq_bullet.planning.peers.tangent_bug import TangentBugPlanner, TangentBugSettings
 from fuzzyq_bullet.planning.peers.vfh import VfhPlanner, VfhSettings
 from fuzzyq_bullet.planning.policies import policy_of
@@ -49,6 +50,8 @@ __all__ = [
     "ImprovedFuzzySettings",
     "Mode",
     "Motion",
+    "NavgroundPlanner",
+    "NavgroundSettings",
     "Observation",
     "Planner",
     "PlannerSettings",
@@ -95,4 +98,7 @@ register_planner("vfh", VfhSettings, lambda settings, rng: VfhPlanner(settings))
 register_planner("apf", ApfSettings, ApfPlanner)
 register_planner(
     "tangent-bug", TangentBugSettings, lambda settings, rng: TangentBugPlanner(settings)
+)
+register_planner(
+    "navground", NavgroundSettings, lambda settings, rng: NavgroundPlanner(settings)
 )

@@ -32,7 +32,7 @@ from pydantic import Field
 from fuzzyq_bullet.planning.base import Floats, Observation
 from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.peers.surroundings import PeerSettings, full_step, to_goal
-from fuzzyq_bullet.planning.ray_search import eased, ray_search
+from fuzzyq_bullet.planning.ray_search import FreeHeading, eased, ray_search
 from fuzzyq_bullet.planning.safety_filter import RESERVE
 from fuzzyq_bullet.planning.scan import JUMP, Point, scan_360
 from fuzzyq_bullet.quantities import Number
@@ -46,6 +46,8 @@ ARRIVED = 0.1
 larger robot."""
 ROUND = 1.5
 """It can be back where it began after so much way (m) only."""
+WIDEST = math.radians(60.0)
+"""A node's edge is not passed further aside than this (rad)."""
 SHORTER = (1.0, 0.5, 0.25)
 """Where nothing is as free as it should be, these parts of it are enough."""
 
@@ -171,7 +173,9 @@ class TangentBugPlanner:
                 same = min(kept, key=lambda n: math.dist(n.point, old.point), default=best)
                 best = same if same.length < best.length + SWITCH else best
             self._node = best
-            return self._go(observation, best.heading, "routine", best.point)
+            found = self._sweep(observation, best.heading, best.side, WIDEST)
+            if found is not None:
+                return self._go(observation, found.heading, "routine", best.point)
         side = min(nodes, key=lambda node: node.length).side if nodes else 1
         contact = _ahead(observation, goal, self._free(observation, goal) + observation.radius)
         self._following, self._node = Following(side, contact, math.inf), None
@@ -203,20 +207,26 @@ class TangentBugPlanner:
         ):
             return Decision(observation.heading, 0.0, mode="following", hopeless=True)
         contact = following.contact
-        for part in SHORTER:
-            enough = part * self._settings.enough * size
-            found = ray_search(observation.sense, bearing, following.side, enough)
-            if found is not None:
-                break
-        else:
+        found = self._sweep(observation, bearing, following.side, math.tau)
+        if found is None:
             return Decision(observation.heading, 0.0, mode="following")
         if found.blocked is not None:
             contact = _ahead(observation, found.blocked[0], found.blocked[1] + observation.radius)
-        found = eased(observation.sense, found, following.side, enough)
         self._following = following._replace(
             followed=followed, driven=driven, start=start, contact=contact
         )
         return self._go(observation, found.heading, "following", contact)
+
+    def _sweep(
+        self, observation: Observation, start: float, side: int, limit: float
+    ) -> FreeHeading | None:
+        """Return the first heading to a side that is free enough, and a little aside of the edge."""
+        for part in SHORTER:
+            enough = part * self._settings.enough * observation.size
+            found = ray_search(observation.sense, start, side, enough, limit)
+            if found is not None:
+                return eased(observation.sense, found, side, enough)
+        return None
 
     def _free(self, observation: Observation, heading: float) -> float:
         """Return how far the robot can go along a heading for certain (m)."""
