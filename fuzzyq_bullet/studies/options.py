@@ -109,7 +109,7 @@ def one_drive_of(text: str) -> Drive:
     return drives[0]
 
 
-def outfit_of(
+def outfit_with(
     robot: str | None, max_speed: float | None, sight: float | None, task: Scenario | None = None
 ) -> Outfit:
     """Return what drives instead of the robot of an environment.

@@ -20,7 +20,7 @@ from fuzzyq_bullet.studies.options import (
     RULES_HELP,
     counts_of,
     drives_of,
-    outfit_of,
+    outfit_with,
     planner_of,
     rules_told,
     with_rules,
@@ -152,7 +152,7 @@ class Escape(Study):
         Raises:
             UserError: If there is no such robot, or it cannot be so fast or see so far.
         """
-        return outfit_of(self.robot, self.max_speed, self.range)
+        return outfit_with(self.robot, self.max_speed, self.range)
 
     def plan(self) -> EscapePlan:
         """Return what is run; asking for nothing is a mistake too."""

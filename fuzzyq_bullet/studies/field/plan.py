@@ -14,6 +14,7 @@ from fuzzyq_bullet.studies.episodes import USUAL, Environment, Job, Outfit
 from fuzzyq_bullet.studies.escape.table import TRAPS
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, PlannerDescription, Seed
 from fuzzyq_bullet.studies.robust.study import strengths
+from fuzzyq_bullet.studies.robust.table import ALL
 
 Label: TypeAlias = tuple[str, str, str]
 """What rows call a planner, its name, and the kind of fields."""
@@ -21,8 +22,8 @@ BOUND = "true-path"
 """What rows call the bound: it knows the field, and drives its shortest path."""
 WORLDS = "worlds"
 """The kind of worlds that were read from files."""
-_SENSED = ("noise", "dropout", "pose_noise", "slip", "latency")
 _USUAL_LEVEL = 2
+"""Place on the scales of ``bench robust``."""
 
 
 @dataclass(frozen=True)
@@ -46,17 +47,7 @@ KINDS: Mapping[str, Kind] = {
     "rectangles": Kind(("rectangles",), 40),
     "traps": Kind(TRAPS, None),
     "moving": Kind(("scatter",), 25, {"movers": {"count": 10}}),
-    "noise": Kind(
-        ("scatter",),
-        50,
-        {
-            "disturbed": {
-                key: value
-                for name in _SENSED
-                for key, value in strengths(name, _USUAL_LEVEL).items()
-            }
-        },
-    ),
+    "noise": Kind(("scatter",), 50, {"disturbed": strengths(ALL, _USUAL_LEVEL)}),
 }
 """Kinds of fields, in the order of the table."""
 

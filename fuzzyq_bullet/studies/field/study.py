@@ -18,7 +18,7 @@ from fuzzyq_bullet.studies.field.paired import paired, shown_better, shown_paire
 from fuzzyq_bullet.studies.field.plan import BOUND, KINDS, WORLDS, FieldPlan, WorldsPlan
 from fuzzyq_bullet.studies.field.table import by_kind, lines_of, shown, shown_worlds
 from fuzzyq_bullet.studies.field.worlds import Asked, Found, worlds_in
-from fuzzyq_bullet.studies.options import PAPER, described, outfit_of, planners_of
+from fuzzyq_bullet.studies.options import PAPER, described, outfit_with, planners_of
 from fuzzyq_bullet.studies.plan import Plan
 from fuzzyq_bullet.studies.registry import register_study
 from fuzzyq_bullet.studies.study import Findings, Picture, Results, Stage, Study, Swept, Work
@@ -91,7 +91,7 @@ class AgainstField(Study):
         kinds = tuple(dict.fromkeys(one.strip() for one in self.kinds.split(",")))
         for name in kinds:
             if name not in KINDS:
-                raise UserError(f"--kinds: {not_one_of('kind', name, KINDS)}")
+                raise UserError(f"--kinds: {not_one_of('kind', name, tuple(KINDS))}")
         for option in ("start", "goal"):
             if getattr(self, option) is not None:
                 raise UserError(f"--{option}: is for the worlds of --worlds; fields have their own")
@@ -101,7 +101,7 @@ class AgainstField(Study):
             kinds=kinds,
             runs=self.runs,
             seed=self.seed,
-            outfit=outfit_of(self.robot, self.max_speed, self.range),
+            outfit=outfit_with(self.robot, self.max_speed, self.range),
         )
 
     def _asked(self, folder: Path) -> Asked:

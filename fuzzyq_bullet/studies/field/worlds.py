@@ -15,7 +15,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.scenario import Goal, Scenario
 from fuzzyq_bullet.scenario.importers import ImportOptions, import_map, importable, options_of
 from fuzzyq_bullet.studies.field.plan import BOUND, World
-from fuzzyq_bullet.studies.options import outfit_of
+from fuzzyq_bullet.studies.options import outfit_with
 from fuzzyq_bullet.untrusted import number
 
 _PICTURES = (".png", ".pgm", ".bmp")
@@ -141,7 +141,7 @@ def _equipped(world: Scenario, asked: Asked, radius: float | None) -> Scenario:
     if radius is not None:
         changes["goal"] = Goal.model_validate({**world.goal.model_dump(), "radius": radius})
     # The robot's model is there already: the import has seen to it.
-    outfit = outfit_of(None, asked.max_speed, asked.sight or world.sensor_range, world)
+    outfit = outfit_with(None, asked.max_speed, asked.sight or world.sensor_range, world)
     if asked.max_speed is not None:
         changes["robot"] = outfit.on(world).robot
     if asked.sight is not None:

@@ -12,11 +12,12 @@ from pydantic import Field
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.scenario import Limits
+from fuzzyq_bullet.scenario.layouts import Wanderers
 from fuzzyq_bullet.studies.episodes import Environment, Job, Outfit
 from fuzzyq_bullet.studies.options import described, planners_of
 from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, PlannerDescription, Seed
 from fuzzyq_bullet.studies.registry import register_study
-from fuzzyq_bullet.studies.robust.table import lines_of, shown, targets_of
+from fuzzyq_bullet.studies.robust.table import ALL, MOVING, lines_of, shown, targets_of
 from fuzzyq_bullet.studies.study import Findings, Picture, Results, Study, Swept, met_by_all
 from fuzzyq_bullet.wording import not_one_of
 
@@ -28,10 +29,13 @@ SCALES: Mapping[str, tuple[float, float, float, float]] = {
     "pose_noise": (0.003, 0.01, 0.03, 0.1),
     "slip": (0.01, 0.03, 0.1, 0.2),
     "latency": (0.05, 0.1, 0.2, 0.4),
+    MOVING: (5, 10, 20, 40),
 }
-"""Four strengths of each disturbance, by the key of the scenario file; the second is usual."""
-ALL, UNDISTURBED = "all", "none"
-NAMES = (*SCALES, ALL)
+"""Four strengths of each disturbance, by the key of the scenario file; the second is usual. What
+moves is so many wanderers (``random.movers``) beside the obstacles that stand."""
+UNDISTURBED = "none"
+_TOGETHER = tuple(name for name in SCALES if name != MOVING)
+NAMES = (*_TOGETHER, ALL, MOVING)
 LEVELS = 4
 
 
@@ -39,15 +43,23 @@ def strengths(name: str, level: int) -> dict[str, float]:
     """Return the keys of the scenario file that a disturbance sets, and to what.
 
     Args:
-        name: One of ``NAMES``; ``all`` stands for all of them at once.
+        name: One of ``NAMES``; ``all`` stands for all at once but what moves.
         level: Its place on the scale, from 1; 0 for none.
     """
     if level == 0:
         return {}
-    found = {key: SCALES[key][level - 1] for key in (SCALES if name == ALL else (name,))}
+    found = {key: SCALES[key][level - 1] for key in (_TOGETHER if name == ALL else (name,))}
     if "pose_noise" in found:
         found["heading_noise"] = found["pose_noise"] * DEGREE_A_CENTIMETRE
     return found
+
+
+def outfit_of(name: str, level: int) -> Outfit:
+    """Return what disturbs the robot in its fields; arguments as for ``strengths``."""
+    told = strengths(name, level)
+    if MOVING in told:
+        return Outfit(movers=Wanderers(count=int(told[MOVING])))
+    return Outfit(disturbed=told)
 
 
 def label_of(planner: str, name: str, level: int) -> str:
@@ -62,7 +74,7 @@ class RobustPlan(Plan):
         planners: The settings of each, by its name.
         disturbances: Names of ``SCALES``, or ``all``.
         levels: Places on their scales, from 1.
-        count: Scattered obstacles in a field.
+        count: Scattered obstacles in a field, which stand.
         runs: Fields.
         seed: Of the sweep.
         limits: When an episode is given up.
@@ -94,7 +106,7 @@ class RobustPlan(Plan):
     def jobs(self, planners: Mapping[str, PlannerSettings]) -> list[Job]:
         """Return all jobs, each with what disturbs it."""
         told = {
-            label: (planners[planner], Outfit(disturbed=strengths(name, level)))
+            label: (planners[planner], outfit_of(name, level))
             for label, planner, name, level in self.labels()
         }
         return [
@@ -105,16 +117,19 @@ class RobustPlan(Plan):
 
 @register_study
 class Robust(Study):
-    """Disturb planners on their wheels; print what noise, slip and latency do to them.
+    """Disturb planners on their wheels by noise, slip, latency and moving obstacles.
 
     Each of noise, dropout, pose_noise, slip and latency comes in four strengths, alone and all
-    together, in the same fields. May be ended at any moment: the same command goes on where it was.
-    Writes robust.csv, a row for every episode, robust.json and robust.png. Exit code 1 when a
-    target is missed.
+    together, in the same fields; so do 5, 10, 20 and 40 moving obstacles, which are no part of
+    "all". Those wander (radius 0.25 m, 0.1 to 0.5 m/s) among the obstacles that stand.
+
+    May be ended at any moment: the same command goes on where it was. Writes robust.csv, a row for
+    every episode, robust.json and robust.png. Exit code 1 when a target is missed. The targets for
+    moving obstacles count for at most 25 that stand.
     """
 
     name: ClassVar[str] = "robust"
-    title: ClassVar[str] = "Noise, slip and latency"
+    title: ClassVar[str] = "Noise, slip, latency and moving obstacles"
     stage_plans: ClassVar[Mapping[str, type[Plan]]] = {"robust": RobustPlan}
     pictured: ClassVar[bool] = True
 
@@ -123,7 +138,7 @@ class Robust(Study):
         ",".join(NAMES), description="Which disturbances, with commas between."
     )
     levels: str = Field("1,2,3,4", description="Which of their four strengths.")
-    count: int = Field(50, ge=0, le=1000, description="Scattered obstacles in a field.")
+    count: int = Field(50, ge=0, le=1000, description="Standing obstacles in a field.")
     runs: int = Field(20, ge=1, le=100_000, description="Fields.")
 
     def planner_set(self) -> Mapping[str, PlannerSettings]:
@@ -174,7 +189,7 @@ class Robust(Study):
         lines = lines_of(rows, list(plan.labels()), strengths)
         fields = len({row.place for row in rows})
         about = f"wheels; seed {plan.seed}; {fields} fields, {plan.count} obstacles each"
-        targets = [one for line in lines if line.level == 2 for one in targets_of(line)]
+        targets = [one for line in lines for one in targets_of(line, plan.count)]
         data = {
             "settings": dict(swept.settings),
             "lines": [asdict(line) for line in lines],
