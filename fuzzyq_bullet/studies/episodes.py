@@ -218,8 +218,8 @@ class Row(BaseModel):
             for a planner without rules.
         at_fault: Whether the robot was at fault for its contact; None without one, and in tables
             of versions that did not tell.
-        decision_ms: Median time of a decision by the clock on the wall (ms), the rays included that
-            the planner asks for; None in studies that do not measure it.
+        decision_ms: Median processor time of a decision (ms), the rays included that the planner
+            asks for; None in studies that do not measure it.
         decision_p95_ms: The time that 95 % of the decisions stay below (ms).
     """
 

@@ -118,26 +118,32 @@ def test_nothing_moves_and_nothing_is_disturbed_for_the_bound(short: Path) -> No
     assert drive_shortest_path(blocked).outcome != "goal"
 
 
-def test_a_watch_changes_nothing_and_notes_every_decision() -> None:
+def test_a_watch_changes_nothing_of_a_planner_and_notes_every_decision() -> None:
     class Still:
         closed = False
 
         def decide(self, observation: Observation, /) -> Decision:
-            return Decision(heading=observation.heading, step=0.0)
+            return Decision(heading=1.0, step=0.0)
 
         def close(self) -> None:
             self.closed = True
 
-    seconds: list[float] = []
-    still = Still()
-    timed = Timed(still, seconds)
-    job = jobs_of(kinds="traps")[0]
-    plain = work({**job.as_order(), "limits": {"time": 1.0}})["row"]
-    assert plain["decision_ms"] > 0.0
-    assert plain["decision_p95_ms"] >= plain["decision_ms"]
-    assert timed.decide.__wrapped__ == still.decide  # type: ignore[attr-defined]
+    still, seconds, now = Still(), list[float](), iter([1.0, 3.5, 10.0, 10.25])
+    timed = Timed(still, seconds, lambda: next(now))
+    observation: Any = None  # it does not look at it
+    assert [timed.decide(observation) for _ in range(2)] == [still.decide(observation)] * 2
+    assert seconds == [2.5, 0.25]
+    assert timed.decide.__wrapped__ == still.decide  # whose line a mistake is told with
     timed.close()
     assert still.closed
+
+
+def test_a_row_tells_the_time_of_its_decisions_unless_it_is_the_bounds() -> None:
+    first, _, bound = (
+        work({**job.as_order(), "limits": {"time": 0.5}})["row"] for job in jobs_of(kinds="traps")
+    )
+    assert first["decision_p95_ms"] >= first["decision_ms"] > 0.0
+    assert bound["decision_ms"] is None
 
 
 # What the rows say

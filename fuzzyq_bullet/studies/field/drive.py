@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from functools import partial, wraps
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from fuzzyq_bullet.episode import planner_of, run_with
 from fuzzyq_bullet.planning import Observation, Planner
+from fuzzyq_bullet.planning.process import ProcessSettings
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.sensors import ExactSensor
 from fuzzyq_bullet.studies.episodes import Job
@@ -25,14 +27,21 @@ class Timed:
     Args:
         planner: The planner.
         seconds: Gets the time of each decision (s).
+        clock: The watch (s). That of the processor does not count what other processes take from
+            this one, nor the work of a planner that is a program of its own.
     """
 
-    def __init__(self, planner: Planner, seconds: list[float]) -> None:
+    def __init__(
+        self,
+        planner: Planner,
+        seconds: list[float],
+        clock: Callable[[], float] = time.process_time,
+    ) -> None:
         @wraps(planner.decide)  # a mistake of the planner's is told with the planner's own line
         def decide(observation: Observation, /) -> Any:
-            began = time.perf_counter()
+            began = clock()
             decided = planner.decide(observation)
-            seconds.append(time.perf_counter() - began)
+            seconds.append(clock() - began)
             return decided
 
         self.decide = decide
@@ -43,7 +52,9 @@ class Timed:
 
 def drive_timed(scenario: Scenario, seconds: list[float]) -> Trajectory:
     """Drive a realised scenario by its planner, and note the time of each decision (s)."""
-    return run_with(Timed(planner_of(scenario), seconds), scenario)
+    apart = isinstance(scenario.planner, ProcessSettings)
+    clock = time.perf_counter if apart else time.process_time
+    return run_with(Timed(planner_of(scenario), seconds, clock), scenario)
 
 
 def drive_bound(scenario: Scenario) -> Trajectory:

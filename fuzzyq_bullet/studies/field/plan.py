@@ -12,7 +12,7 @@ from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.scenario import Limits, Scenario
 from fuzzyq_bullet.studies.episodes import USUAL, Environment, Job, Outfit
 from fuzzyq_bullet.studies.escape.table import TRAPS
-from fuzzyq_bullet.studies.plan import PATIENT, Episode, Number, Plan, PlannerDescription, Seed
+from fuzzyq_bullet.studies.plan import Episode, Number, Plan, PlannerDescription, Seed
 from fuzzyq_bullet.studies.robust.study import strengths
 from fuzzyq_bullet.studies.robust.table import ALL
 
@@ -22,6 +22,8 @@ BOUND = "true-path"
 """What rows call the bound: it knows the field, and drives its shortest path."""
 WORLDS = "worlds"
 """The kind of worlds that were read from files."""
+CIRCLES = Limits(time=240.0, steps=100_000)
+"""Ten times what the bound takes: who has not arrived by then goes in circles."""
 _USUAL_LEVEL = 2
 """Place on the scales of ``bench robust``."""
 
@@ -68,7 +70,7 @@ class FieldPlan(Plan):
     kinds: tuple[str, ...] = Field(min_length=1)
     runs: Number
     seed: Seed = 0
-    limits: Limits = PATIENT
+    limits: Limits = CIRCLES
     outfit: Outfit = USUAL
 
     def labels(self) -> Iterator[Label]:

@@ -186,7 +186,7 @@ def shown(lines: Sequence[Line], about: str) -> Table:
         "at fault: contacts at which the robot moved. Of the runs that reached the goal: time: "
         f"over that of the bound, in the fields that both solved [95 %, of {FEWEST} and more]; "
         "path: driven over shortest path; turning: changes of direction (rad/m); jerk: mean of "
-        "|jerk| (m/s³). ms, p95: time of a decision by the clock on the wall, its rays included: "
+        "|jerk| (m/s³). ms, p95: processor time of a decision, its rays included: "
         f"median, and what 95 % stay below{scored}."
     )
     return Table(caption, ("fields", *(name for name, _ in columns)), rows, left=(0, 1))
