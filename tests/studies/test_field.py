@@ -165,21 +165,22 @@ def test_figures_are_of_the_runs_that_arrived_and_contacts_of_all() -> None:
         *(row("a", run) for run in (0, 1)),
         row("a", 2, outcome="collision", collisions=1, at_fault=False, time_s=1.0),
         row("a", 3, outcome="collision", collisions=1, at_fault=True, feasible=False),
+        row("a", 4, outcome="collision", collisions=1, at_fault=True),
         *(
             row("b", run, outcome="error", error="E", feasible=None, time_s=None)
-            for run in range(4)
+            for run in range(5)
         ),
-        *(row(BOUND, run, time_s=16.0) for run in range(4)),
+        *(row(BOUND, run, time_s=16.0) for run in range(5)),
     )
     a, b = told["a"], told["b"]
     assert a.success is not None
-    assert (a.success.number, a.success.of) == (2, 3)
-    assert (a.contacts, a.at_fault, a.errors) == (2, 1, 0)
+    assert (a.success.number, a.success.of) == (2, 4)
+    assert (a.contacts, a.at_fault, a.errors) == (3, 2, 0)
     assert a.over_bound is not None
     assert (a.over_bound.value, a.over_bound.pairs) == (pytest.approx(20 / 16), 2)
     assert (a.path, a.turning, a.jerk) == (pytest.approx(1.1), pytest.approx(0.5), 2.0)
     assert b.success is not None
-    assert (b.success.number, b.success.of, b.errors) == (0, 4, 4)  # an error excuses nothing
+    assert (b.success.number, b.success.of, b.errors) == (0, 5, 5)  # an error excuses nothing
     assert b.over_bound is b.path is b.turning is b.jerk is None
     assert told[BOUND].over_bound is None
 
@@ -215,7 +216,9 @@ def test_a_planner_that_arrives_where_the_other_does_not_is_better_in_success() 
     (one,) = paired(kinds_of(*rows), "a")
     assert one.better() == ["success", "contacts"]
     assert one.figures["time"] is None
-    cells = [tuple(line[:3]) for line in shown_better([one], "a").rows]
+    table = shown_better([one], "a")
+    assert table is not None
+    cells = [tuple(line[:3]) for line in table.rows]
     assert cells == [("scatter", "b", "success"), ("scatter", "b", "contacts")]
 
 
@@ -251,7 +254,8 @@ def test_a_sweep_writes_table_data_and_picture(swept: Path) -> None:
     assert {one["than"] for one in told["paired"]} == {"fuzzy-q-lambda"}
     assert (swept / "field.png").stat().st_size > 10_000
     said = (swept / "said").read_text()
-    assert said.index("What others do better") < said.index("Planners in the same fields")
+    assert said.index("Planners in the same fields") < said.index("Each beside fuzzy-q-lambda")
+    assert "What others do better" not in said  # of one field nobody can say so
 
 
 @pytest.mark.slow
@@ -278,7 +282,7 @@ def test_a_report_has_the_tables_with_times_and_the_command(
     out = tmp_path / "report.html"
     inside("report", swept, "--out", out, "--no-figures", "--no-videos")
     page = out.read_text()
-    assert "What others do better than fuzzy-q-lambda" in page
+    assert "Each beside fuzzy-q-lambda in the same fields" in page
     assert "fuzzyq bench field --planners fuzzy-q-lambda,improved-fuzzy" in page
     (found,) = studies_below(swept)
     rows = found.results["field"].rows

@@ -105,8 +105,12 @@ def _is_better(measure: Measure, one: Estimate) -> bool:
     return one.low > even if measure.more else one.high < even
 
 
-def shown_better(pairs: Sequence[Paired], than: str) -> Table:
-    """Return what others do better than a planner, which is what a reader should see first."""
+def shown_better(pairs: Sequence[Paired], than: str) -> Table | None:
+    """Return what others do better than a planner, which is what a reader should see first.
+
+    Returns:
+        None if there are too few fields to say so of anything.
+    """
     rows = [
         [one.kind, one.planner, name, told(one.figures[name], form_of(name))]
         for one in pairs
@@ -117,6 +121,8 @@ def shown_better(pairs: Sequence[Paired], than: str) -> Table:
         for one in pairs
         for figure in one.figures.values()
     )
+    if not count:
+        return None
     caption = (
         f"What others do better than {than}, by an interval of 95 % that excludes chance: the "
         f"difference of a share, the ratio of anything else. Of {count} comparisons chance alone "

@@ -154,9 +154,10 @@ class AgainstField(Study):
         score = score_of if isinstance(plan, FieldPlan) else _score_in(plan)
         lines, pairs = lines_of(kinds, score), paired(kinds, than)
         about = f"wheels; seed {plan.seed}" if isinstance(plan, FieldPlan) else "wheels"
-        tables = [shown(lines, about)]
+        better = shown_better(pairs, than)
+        tables = [*([better] if better else []), shown(lines, about)]
         if pairs:
-            tables = [shown_better(pairs, than), *tables, shown_paired(pairs, than)]
+            tables.append(shown_paired(pairs, than))
         each = (shown_worlds(kinds[WORLDS], score),) if WORLDS in kinds else ()
         few = len(getattr(plan, "worlds", ())) <= FEW_WORLDS
         data = {
