@@ -99,6 +99,4 @@ register_planner("apf", ApfSettings, ApfPlanner)
 register_planner(
     "tangent-bug", TangentBugSettings, lambda settings, rng: TangentBugPlanner(settings)
 )
-register_planner(
-    "navground", NavgroundSettings, lambda settings, rng: NavgroundPlanner(settings)
-)
+register_planner("navground", NavgroundSettings, lambda settings, rng: NavgroundPlanner(settings))
