@@ -42,8 +42,6 @@ from fuzzyq_bullet.planning.peers.wall_following import ahead, follow_wall
 from fuzzyq_bullet.planning.scan import Point
 from fuzzyq_bullet.quantities import Number
 
-TIE = 1e-3
-"""A wall less far from the goal's direction (rad) is passed on a side that is drawn."""
 PROGRESS = 0.05
 """Nearer to the goal by this much (m) is progress."""
 
@@ -101,9 +99,8 @@ class Trap(NamedTuple):
 class ApfPlanner:
     """Goes down the potential, and along walls out of its minima."""
 
-    def __init__(self, settings: ApfSettings, rng: np.random.Generator) -> None:
+    def __init__(self, settings: ApfSettings) -> None:
         self._settings = settings
-        self._rng = rng
         self._goal: tuple[float, float] | None = None
         self._nearest, self._nearest_at = math.inf, 0.0
         self._trap: Trap | None = None
@@ -162,8 +159,7 @@ class ApfPlanner:
             side = -before.side if near else before.side
         else:  # the wall lies to the right of the goal's direction: pass it on the left
             off = math.remainder(goal - heading, math.tau)
-            tie = abs(off) < TIE
-            side = int(self._rng.choice([-1, 1])) if tie else int(math.copysign(1.0, off))
+            side = int(math.copysign(1.0, off))
         left = math.dist(observation.position, observation.goal)
         return Trap(observation.position, left, side, observation.time, contact)
 

@@ -143,7 +143,8 @@ class TangentBugPlanner:
         moved = 0.0 if self._at is None else math.dist(self._at, observation.position)
         self._at = observation.position
         goal, left = to_goal(observation)
-        if self._free(observation, goal) >= min(left, observation.range - 1e-6):
+        seen = left if self._following is not None else min(left, observation.range)
+        if self._free(observation, goal) >= seen - 1e-6:
             self._following = self._leaving = self._node = None
             return self._go(observation, goal, "routine", observation.goal)
         if self._following is None:
