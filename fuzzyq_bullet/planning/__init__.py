@@ -95,10 +95,8 @@ register_planner(
 register_planner("process", ProcessSettings, ProcessPlanner)
 register_planner("dwa", DwaSettings, lambda settings, rng: DwaPlanner(settings))
 register_planner("vfh", VfhSettings, lambda settings, rng: VfhPlanner(settings))
-register_planner("apf", ApfSettings, ApfPlanner)
+register_planner("apf", ApfSettings, lambda settings, rng: ApfPlanner(settings))
 register_planner(
     "tangent-bug", TangentBugSettings, lambda settings, rng: TangentBugPlanner(settings)
 )
-register_planner(
-    "navground", NavgroundSettings, lambda settings, rng: NavgroundPlanner(settings)
-)
+register_planner("navground", NavgroundSettings, lambda settings, rng: NavgroundPlanner(settings))

@@ -11,10 +11,9 @@
   the paper's would grow without bound.
 - *Local minima*: X. Yun, K.-C. Tan, A wall-following method for escaping local minima in potential
   field based motion planning, International Conference on Advanced Robotics, 1997. If the robot has
-  come no nearer to the goal for some time, the repulsion is turned by a right angle, into a vortex
-  about the nearest obstacle, and a spring keeps the distance to it. The robot goes back to the field
-  once it is nearer to the goal than where it was trapped, and the goal's direction is free. If it
-  is trapped there again, or the escape takes too long, it tries the other side.
+  come no nearer to the goal for some time, it follows the wall that holds it up. It goes back to the
+  field once it is nearer to the goal than where it was trapped, and the goal's direction is free.
+  If it is trapped there again, or the escape takes too long, it tries the other side.
 
 ρ is measured from the edge of the robot's disc. The force is a velocity: its direction is the
 heading, its size up to 1 the part of the greatest speed. Left out: Khatib's damping and inertia,
@@ -39,6 +38,8 @@ from fuzzyq_bullet.planning.peers.surroundings import (
     look_around,
     to_goal,
 )
+from fuzzyq_bullet.planning.peers.wall_following import ahead, follow_wall
+from fuzzyq_bullet.planning.scan import Point
 from fuzzyq_bullet.quantities import Number
 
 PROGRESS = 0.05
@@ -51,9 +52,9 @@ class ApfSettings(PeerSettings):
     """An artificial potential field (Khatib 1986), with cures for its goals and its minima."""
 
     name: Literal["apf"] = "apf"
-    repulsion: _Positive = Field(default=0.1, description="η: weight of what repels.")
+    repulsion: _Positive = Field(default=0.02, description="η: weight of what repels.")
     influence: Annotated[Number, Field(gt=0.0, le=10.0)] = Field(
-        default=0.6, description="ρ0: what is farther from the robot's edge does not repel (m)."
+        default=0.4, description="ρ0: what is farther from the robot's edge does not repel (m)."
     )
     slow_within: _Positive = Field(
         default=0.3, description="Nearer to the goal it attracts less (m)."
@@ -67,8 +68,10 @@ class ApfSettings(PeerSettings):
     patience: _Positive = Field(
         default=3.0, description="Without progress for so long it is trapped (s)."
     )
-    keep: _Positive = Field(
-        default=0.15, description="Distance from its edge to the wall that it follows (m)."
+    enough: Annotated[Number, Field(gt=0.0, le=10.0)] = Field(
+        default=0.3,
+        description="Along a wall it takes the first heading with so much free (m, for the usual "
+        "robot).",
     )
     longest: _Positive = Field(
         default=60.0, description="An escape that takes longer tries the other side (s)."
@@ -81,22 +84,23 @@ class Trap(NamedTuple):
     Attributes:
         at: Its position (m).
         left: Distance to the goal there (m).
-        side: +1 if it follows the wall on its left, -1 on its right.
+        side: +1 if it passes the wall on its left: the wall is on the robot's right; else -1.
         since: Time at which the escape began (s).
+        contact: The point of the wall that stopped the robot last (m).
     """
 
     at: tuple[float, float]
     left: float
-    side: float
+    side: int
     since: float
+    contact: Point
 
 
 class ApfPlanner:
     """Goes down the potential, and along walls out of its minima."""
 
-    def __init__(self, settings: ApfSettings, rng: np.random.Generator) -> None:
+    def __init__(self, settings: ApfSettings) -> None:
         self._settings = settings
-        self._rng = rng
         self._goal: tuple[float, float] | None = None
         self._nearest, self._nearest_at = math.inf, 0.0
         self._trap: Trap | None = None
@@ -107,19 +111,16 @@ class ApfPlanner:
         around = look_around(observation)
         goal, left = to_goal(observation)
         self._watch(observation, around, goal, left)
-        if self._escaping and around.met.any():
-            assert self._trap is not None
-            force = self._vortex(around, self._trap.side)
-        else:
-            force = force_of(around, goal, left, self._settings)
+        if self._escaping:
+            return self._escape(observation)
+        force = force_of(around, goal, left, self._settings)
         size = math.hypot(*force)
         heading = math.atan2(force[1], force[0]) if size > 0.0 else observation.heading
         return Decision(
             heading,
             min(1.0, size) * full_step(observation),
-            mode="breakout" if self._escaping else "routine",
             aim=observation.goal,
-            target=self._trap.at if self._escaping and self._trap else observation.goal,
+            target=observation.goal,
         )
 
     def _watch(
@@ -144,20 +145,23 @@ class ApfPlanner:
             elif now - trap.since > settings.longest * observation.slowness:
                 self._trap = trap._replace(side=-trap.side, since=now)
         elif now - self._nearest_at > patient and around.met.any():
-            self._trap = Trap(observation.position, left, self._side(observation, around), now)
+            self._trap = self._trapped(observation, around, goal)
             self._escaping = True
 
-    def _side(self, observation: Observation, around: Surroundings) -> float:
-        """Return the side to follow the wall on: the other one where it was trapped before."""
+    def _trapped(self, observation: Observation, around: Surroundings, goal: float) -> Trap:
+        """Return the trap that the robot is in, and the side that it takes out of it."""
+        wall = int(np.argmin(around.distances))
+        heading, distance = float(around.headings[wall]), float(around.distances[wall])
+        contact = ahead(observation.position, heading, distance)
         before = self._trap
         if before is not None:
             near = math.dist(before.at, observation.position) < self._settings.influence
-            return -before.side if near else before.side
-        wall = around.headings[np.argmin(around.distances)]
-        off = math.remainder(float(wall) - observation.heading, math.tau)
-        if abs(off) < 1e-3:
-            off = float(self._rng.choice([-1.0, 1.0]))
-        return math.copysign(1.0, off)
+            side = -before.side if near else before.side
+        else:  # the wall lies to the right of the goal's direction: pass it on the left
+            off = math.remainder(goal - heading, math.tau)
+            side = int(math.copysign(1.0, off))
+        left = math.dist(observation.position, observation.goal)
+        return Trap(observation.position, left, side, observation.time, contact)
 
     def _is_free(self, around: Surroundings, goal: float, left: float) -> bool:
         """Return whether nothing repels from the goal's direction."""
@@ -165,12 +169,17 @@ class ApfPlanner:
         ahead = around.clearances[(off < math.radians(30.0)) & around.met]
         return bool(ahead.min(initial=np.inf) > min(left, self._settings.influence))
 
-    def _vortex(self, around: Surroundings, side: float) -> tuple[float, float]:
-        """Return a force of size 1 along the nearest obstacle, which lies to the given side."""
-        nearest = int(np.argmin(around.distances))
-        off = (around.distances[nearest] - around.radius - around.reserve) / self._settings.keep
-        heading = around.headings[nearest] - side * (math.pi / 2.0 - math.atan(off - 1.0))
-        return math.cos(heading), math.sin(heading)
+    def _escape(self, observation: Observation) -> Decision:
+        """Return a step along the wall."""
+        trap = self._trap
+        assert trap is not None
+        found = follow_wall(observation, trap.contact, trap.side, self._settings.enough)
+        heading = observation.heading
+        if found is not None:
+            heading, contact = found
+            self._trap = trap._replace(contact=contact)
+        step = 0.0 if found is None else full_step(observation)
+        return Decision(heading, step, mode="breakout", aim=trap.contact, target=trap.at)
 
 
 def force_of(

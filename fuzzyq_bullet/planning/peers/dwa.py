@@ -58,9 +58,7 @@ class DwaSettings(PeerSettings):
 
     name: Literal["dwa"] = "dwa"
     heading: _Weight = Field(default=2.0, description="α: weight of facing the goal.")
-    clearance: _Weight = Field(
-        default=0.2, description="β: weight of the free length of the arc."
-    )
+    clearance: _Weight = Field(default=0.2, description="β: weight of the free length of the arc.")
     velocity: _Weight = Field(default=0.2, description="γ: weight of the speed.")
     interval: Annotated[Number, Field(gt=0.0, le=2.0)] = Field(
         default=0.25,
@@ -112,17 +110,18 @@ class DwaPlanner:
         told = Decision(0.0, 0.0, aim=observation.goal, target=observation.goal)
         ahead = window.admissible & (window.speeds > CRAWL)[:, None]
         if not ahead.any():
-            return TwistCommand(0.0, self._turn_away(points, observation) * motion.max_turn_rate,
-                                told._replace(mode="breakout"))
+            return TwistCommand(
+                0.0,
+                self._turn_away(points, observation) * motion.max_turn_rate,
+                told._replace(mode="breakout"),
+            )
         self._turning = 0.0
         worth = np.where(window.admissible, self._worth(window, observation, motion), 0.0)
         worth = np.where(ahead, _smoothed(worth), -1.0)
         speed, rate = np.unravel_index(int(np.argmax(worth)), worth.shape)
         return TwistCommand(float(window.speeds[speed]), float(window.rates[rate]), told)
 
-    def _worth(
-        self, window: Window, observation: Observation, motion: Motion
-    ) -> Floats:
+    def _worth(self, window: Window, observation: Observation, motion: Motion) -> Floats:
         """Return α·heading + β·dist + γ·velocity of each pair, shape (S, W)."""
         speeds, rates = window.speeds[:, None], window.rates[None, :]
         horizon = self._settings.horizon

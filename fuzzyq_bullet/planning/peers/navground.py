@@ -74,8 +74,7 @@ class NavgroundPlanner:
             core: Any = importlib.import_module("navground.core")
         except ImportError as error:
             raise UserError(
-                "the package navground is not installed: "
-                "pip install 'fuzzyq_bullet[peers]'"
+                "the package navground is not installed: pip install 'fuzzyq_bullet[peers]'"
             ) from error
         self._core = core
         self._settings = settings
@@ -84,8 +83,7 @@ class NavgroundPlanner:
             if not self._behavior.has(key):
                 known = ", ".join(sorted(self._behavior.properties))
                 raise UserError(
-                    f"properties: {settings.behavior} has no {shorten(key)}; "
-                    f"it has {known}"
+                    f"properties: {settings.behavior} has no {shorten(key)}; it has {known}"
                 )
             self._behavior.set(key, value)
         self._ready = False

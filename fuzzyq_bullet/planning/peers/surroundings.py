@@ -64,9 +64,7 @@ def look_around(observation: Observation) -> Surroundings:
     headings = np.arange(MANY_RAYS if far else RAYS) * (math.tau / (MANY_RAYS if far else RAYS))
     distances = observation.look(headings.tolist())
     met = distances < observation.range + observation.radius - 1e-9
-    return Surroundings(
-        headings, distances, met, observation.radius, observation.uncertainty
-    )
+    return Surroundings(headings, distances, met, observation.radius, observation.uncertainty)
 
 
 def to_goal(observation: Observation) -> tuple[float, float]:

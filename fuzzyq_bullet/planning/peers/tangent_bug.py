@@ -32,7 +32,12 @@ from pydantic import Field
 from fuzzyq_bullet.planning.base import Floats, Observation
 from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.peers.surroundings import PeerSettings, full_step, to_goal
-from fuzzyq_bullet.planning.ray_search import FreeHeading, eased, ray_search
+from fuzzyq_bullet.planning.peers.wall_following import (
+    ahead,
+    follow_wall,
+    free_heading,
+    towards,
+)
 from fuzzyq_bullet.planning.safety_filter import RESERVE
 from fuzzyq_bullet.planning.scan import JUMP, Point, scan_360
 from fuzzyq_bullet.quantities import Number
@@ -48,9 +53,6 @@ ROUND = 1.5
 """It can be back where it began after so much way (m) only."""
 WIDEST = math.radians(60.0)
 """A node's edge is not passed further aside than this (rad)."""
-SHORTER = (1.0, 0.5, 0.25)
-"""Where nothing is as free as it should be, these parts of it are enough."""
-
 _Positive = Annotated[Number, Field(gt=0.0, le=10.0)]
 
 
@@ -141,7 +143,8 @@ class TangentBugPlanner:
         moved = 0.0 if self._at is None else math.dist(self._at, observation.position)
         self._at = observation.position
         goal, left = to_goal(observation)
-        if self._free(observation, goal) >= min(left, observation.range - 1e-6):
+        seen = left if self._following is not None else min(left, observation.range)
+        if self._free(observation, goal) >= seen - 1e-6:
             self._following = self._leaving = self._node = None
             return self._go(observation, goal, "routine", observation.goal)
         if self._following is None:
@@ -157,7 +160,7 @@ class TangentBugPlanner:
         """Return a step to the best node; None if the robot has to follow the boundary."""
         if self._leaving is not None:
             point, below = self._leaving
-            bearing, far = _towards(observation.position, point)
+            bearing, far = towards(observation.position, point)
             near = far < ARRIVED * observation.size
             if left >= below and not near and self._free(observation, bearing) > RESERVE:
                 return self._go(observation, bearing, "following", point)
@@ -168,16 +171,23 @@ class TangentBugPlanner:
             best = min(nearer, key=lambda node: node.length)
             old = self._node
             if old is not None:
-                kept = [n for n in nearer if math.dist(n.point, old.point) < SWITCH * 2.0
-                        and n.side == old.side]
+                kept = [
+                    n
+                    for n in nearer
+                    if math.dist(n.point, old.point) < SWITCH * 2.0 and n.side == old.side
+                ]
                 same = min(kept, key=lambda n: math.dist(n.point, old.point), default=best)
                 best = same if same.length < best.length + SWITCH else best
             self._node = best
-            found = self._sweep(observation, best.heading, best.side, WIDEST)
+            found = free_heading(
+                observation, best.heading, best.side, self._settings.enough, WIDEST
+            )
             if found is not None:
                 return self._go(observation, found.heading, "routine", best.point)
         side = min(nodes, key=lambda node: node.length).side if nodes else 1
-        contact = _ahead(observation, goal, self._free(observation, goal) + observation.radius)
+        contact = ahead(
+            observation.position, goal, self._free(observation, goal) + observation.radius
+        )
         self._following, self._node = Following(side, contact, math.inf), None
         return None
 
@@ -185,7 +195,7 @@ class TangentBugPlanner:
         """Return a step along the boundary, or the first one away from it."""
         following, size = self._following, observation.size
         assert following is not None
-        bearing, _ = _towards(observation.position, following.contact)
+        bearing, _ = towards(observation.position, following.contact)
         goal = np.array(observation.goal)
         boundary = _same_obstacle(view, bearing)
         distance = np.hypot(*(view.ends - goal).T)
@@ -194,39 +204,27 @@ class TangentBugPlanner:
         others = ~boundary
         reach = distance[others].min(initial=np.inf)
         if reach < followed - UNDERCUT:
-            point = view.ends[others][np.argmin(distance[others])]
-            self._following = None
-            self._leaving = ((float(point[0]), float(point[1])), followed)
-            return self._go(observation, _towards(observation.position, point)[0], "following",
-                            self._leaving[0])
+            x, y = view.ends[others][np.argmin(distance[others])].tolist()
+            self._following, self._leaving = None, ((x, y), followed)
+            bearing, _ = towards(observation.position, (x, y))
+            return self._go(observation, bearing, "following", (x, y))
         driven, start = following.driven + moved, following.start
         if start is None and driven > ROUND / 3.0 * size:
             start = observation.position
-        elif start is not None and driven > ROUND * size + ROUND / 3.0 * size and (
-            math.dist(start, observation.position) < ARRIVED * size
+        elif (
+            start is not None
+            and driven > ROUND * size + ROUND / 3.0 * size
+            and (math.dist(start, observation.position) < ARRIVED * size)
         ):
             return Decision(observation.heading, 0.0, mode="following", hopeless=True)
-        contact = following.contact
-        found = self._sweep(observation, bearing, following.side, math.tau)
+        found = follow_wall(observation, following.contact, following.side, self._settings.enough)
         if found is None:
             return Decision(observation.heading, 0.0, mode="following")
-        if found.blocked is not None:
-            contact = _ahead(observation, found.blocked[0], found.blocked[1] + observation.radius)
+        heading, contact = found
         self._following = following._replace(
             followed=followed, driven=driven, start=start, contact=contact
         )
-        return self._go(observation, found.heading, "following", contact)
-
-    def _sweep(
-        self, observation: Observation, start: float, side: int, limit: float
-    ) -> FreeHeading | None:
-        """Return the first heading to a side that is free enough, and a little aside of the edge."""
-        for part in SHORTER:
-            enough = part * self._settings.enough * observation.size
-            found = ray_search(observation.sense, start, side, enough, limit)
-            if found is not None:
-                return eased(observation.sense, found, side, enough)
-        return None
+        return self._go(observation, heading, "following", contact)
 
     def _free(self, observation: Observation, heading: float) -> float:
         """Return how far the robot can go along a heading for certain (m)."""
@@ -239,11 +237,12 @@ class TangentBugPlanner:
         left = math.dist(observation.position, observation.goal)
         return Decision(
             heading,
-            min(full_step(observation), left, usable) if observation.motion is None
+            min(full_step(observation), left, usable)
+            if observation.motion is None
             else full_step(observation),
             reach=usable,
             mode=mode,
-            aim=(float(to[0]), float(to[1])),
+            aim=to,
             target=observation.goal,
         )
 
@@ -257,9 +256,7 @@ def view_of(observation: Observation) -> View:
     )
     ways = np.column_stack([np.cos(headings), np.sin(headings)])
     ends = np.array(observation.position) + lengths[:, None] * ways
-    return View(
-        headings, lengths, ends, lengths < scan.range - 1e-9, scan.range, JUMP * scan.size
-    )
+    return View(headings, lengths, ends, lengths < scan.range - 1e-9, scan.range, JUMP * scan.size)
 
 
 def nodes_of(view: View, observation: Observation) -> list[Node]:
@@ -297,13 +294,3 @@ def _same_obstacle(view: View, bearing: float) -> Floats:
                 break
             k = following
     return same
-
-
-def _towards(start: Point, point: Point | Floats) -> tuple[float, float]:
-    x, y = float(point[0]) - start[0], float(point[1]) - start[1]
-    return math.atan2(y, x), math.hypot(x, y)
-
-
-def _ahead(observation: Observation, heading: float, distance: float) -> Point:
-    x, y = observation.position
-    return x + distance * math.cos(heading), y + distance * math.sin(heading)
