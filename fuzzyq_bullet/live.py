@@ -14,8 +14,9 @@ from typing import Protocol
 
 import numpy as np
 
-from fuzzyq_bullet.episode import run
+from fuzzyq_bullet.episode import planner_of, run_in, world_of
 from fuzzyq_bullet.geometry import Field, wrap_angle
+from fuzzyq_bullet.moving import Floats, first_poses, poses_between
 from fuzzyq_bullet.physics.camera import Mesh
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.window import Line, Window, WindowClosed
@@ -26,6 +27,9 @@ from fuzzyq_bullet.video import meshes, style
 from fuzzyq_bullet.video.captions import outcome_lines
 from fuzzyq_bullet.video.decision_hold import HOLD
 from fuzzyq_bullet.video.explanation import reason
+from fuzzyq_bullet.video.footprints import arrow
+from fuzzyq_bullet.video.movers import nose_size
+from fuzzyq_bullet.video.solid_movers import body_of, nose_of
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 """Simulated seconds in a second, to which the keys for slower and faster go."""
@@ -34,6 +38,10 @@ PAUSE, STEP, FASTER, SLOWER, QUIT = " ", "s", "=+", "-", "q"
 KEYS = "space: pause   s: one decision   +/-: faster, slower   q: quit"
 
 _FRAME = 1.0 / 30.0
+_LEAST_WAY = 1e-6
+"""What moves less from decision to decision (m) stands."""
+_AWAY = (1e4, 0.0, 0.0)
+"""Where the arrow is of what goes nowhere: out of sight."""
 _LONGEST_GAP = 0.25
 """Longest time (s) between two frames that is made up for."""
 
@@ -47,6 +55,7 @@ class Screen(Protocol):
         heading: float,
         lines: Sequence[Line] = (),
         *,
+        moved: Sequence[Sequence[float]] = (),
         passed: Sequence[tuple[float, float]] = (),
         above: Sequence[str] = (),
         below: Sequence[str] = (),
@@ -73,9 +82,14 @@ def watch(scenario: Scenario, *, speed: float = 1.0, stay: bool = True) -> Traje
     scenario = realise(scenario)
     check(scenario)
     still, robot = still_meshes(scenario), scenario.robot.spec
-    with Window(still, robot, background=style.PAGE, paint=style.ROBOT) as window:
-        spectator = Spectator(window, scenario, speed)
-        trajectory = run(scenario, observer=spectator)
+    moving = moving_meshes(scenario)
+    with (
+        Window(still, robot, moving, background=style.PAGE, paint=style.ROBOT) as window,
+        world_of(scenario) as world,
+    ):
+        spectator = Spectator(window, scenario, speed, movers=world.movers.poses)
+        planner = planner_of(scenario)
+        trajectory = run_in(world, scenario, planner, observer=spectator)
         if stay:
             with suppress(WindowClosed):
                 spectator.stay(trajectory)
@@ -83,12 +97,12 @@ def watch(scenario: Scenario, *, speed: float = 1.0, stay: bool = True) -> Traje
 
 
 def still_meshes(scenario: Scenario) -> list[Mesh]:
-    """Return ground, walls, obstacles, via points and goal of a realised scenario, as filmed."""
+    """Return ground, walls, what stands, via points and goal of a realised scenario, as filmed."""
     everywhere = meshes.EVERYWHERE
     return [
         *meshes.solids(
             meshes.ground_of(scenario, everywhere),
-            [piece for obstacle in scenario.obstacles for piece in obstacle.pieces()],
+            [piece for obstacle in scenario.standing for piece in obstacle.pieces()],
             meshes.walls_of(scenario, everywhere),
             meshes.goal_disc(scenario),
         ),
@@ -96,6 +110,16 @@ def still_meshes(scenario: Scenario) -> list[Mesh]:
         *(meshes.disc(via.position, via.radius) for via in scenario.via),
         meshes.pole(scenario.goal.position, 1.0),
     ]
+
+
+def moving_meshes(scenario: Scenario) -> list[Mesh]:
+    """Return the solid of each moving obstacle, and the arrow on it, each about the origin."""
+    found = []
+    for index in scenario.movers:
+        shape = scenario.obstacles[index]
+        pieces = [piece - np.asarray(shape.position) for piece in shape.pieces()]
+        found += [body_of(pieces), nose_of(arrow((0.0, 0.0), 0.0, nose_size(shape)))]
+    return found
 
 
 class Spectator:
@@ -107,6 +131,7 @@ class Spectator:
         speed: Simulated seconds in a second, to begin with.
         clock: Returns the time (s).
         sleep: Waits for some time (s).
+        movers: Returns where the moving obstacles are now, shape (M, 3); see ``Trajectory.movers``.
     """
 
     def __init__(
@@ -116,10 +141,15 @@ class Spectator:
         speed: float,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
+        movers: Callable[[], Floats] | None = None,
     ) -> None:
         self._window = window
         self._scenario = scenario
-        self._field = Field.of(scenario.obstacles, scenario.arena)
+        self._field = Field.of(scenario.standing, scenario.arena)
+        first = first_poses(scenario)
+        self._movers = movers or (lambda: first)
+        self._poses = (first, first)  # at the latest two decisions
+        self._headings = np.full(len(first), np.nan)
         self._clock, self._sleep = clock, sleep
         self._speed = speed
         self._paused = self._one_step = False
@@ -138,9 +168,11 @@ class Spectator:
             WindowClosed: If somebody closes the window, or presses the key for it.
         """
         self._last = now
+        self._poses = self._poses[1], self._movers()
+        self._headings = self._headings_now()
         self._passed.append((before.x, before.y))
         self._lines = self._lines_of(before, decision)
-        self._why = decision.mode, reason(self._at_once(before, decision), 0)
+        self._why = decision.mode, reason(self._at_once(before, decision, now), 0)
         while True:
             if self._due:
                 if self._shown > now.time:
@@ -188,6 +220,7 @@ class Spectator:
             (before.x + part * (now.x - before.x), before.y + part * (now.y - before.y)),
             before.heading + part * turn,
             self._lines,
+            moved=self._moved(part),
             passed=self._passed,
             above=(
                 f"{scenario.name}   {scenario.planner.name}   seed {scenario.seed}",
@@ -221,6 +254,19 @@ class Spectator:
             self._said, self._since = self._why, self._looked
         return self._said
 
+    def _headings_now(self) -> Floats:
+        """Return where the moving obstacles go (rad); what halts keeps the direction it had."""
+        dx, dy, _ = (self._poses[1] - self._poses[0]).T
+        return np.where(np.hypot(dx, dy) > _LEAST_WAY, np.arctan2(dy, dx), self._headings)
+
+    def _moved(self, part: float) -> list[tuple[float, float, float]]:
+        """Return the poses of all moving solids: of each obstacle, and of its arrow."""
+        found = []
+        poses = poses_between(*self._poses, part).tolist()
+        for (x, y, turn), heading in zip(poses, self._headings.tolist(), strict=True):
+            found += [(x, y, turn), _AWAY if math.isnan(heading) else (x, y, heading)]
+        return found
+
     def _lines_of(self, before: RobotState, decision: Decision) -> tuple[Line, ...]:
         """Return the detection lines, as far as the front of the robot could go along each."""
         if not np.isfinite([*decision.lines, *decision.lengths]).all():
@@ -240,14 +286,15 @@ class Spectator:
             )
         )
 
-    def _at_once(self, before: RobotState, decision: Decision) -> Trajectory:
+    def _at_once(self, before: RobotState, decision: Decision, now: RobotState) -> Trajectory:
         """Return a record of this decision alone, which is explained as those of a whole run."""
         return Trajectory.from_episode(
             self._scenario,
             self._field,
-            [before],
+            [before, now],
             [(0, decision)],
             outcome="timeout",
             physics_steps=0,
             collision=None,
+            movers=self._poses,
         )

@@ -171,7 +171,12 @@ def poses_at(trajectory: Trajectory, time: float) -> Floats:
         return np.asarray(poses[0])
     one, two = poses[after - 1], poses[after]
     part = (time - float(ticks[after - 1])) / float(ticks[after] - ticks[after - 1])
-    between = one + (two - one) * min(max(part, 0.0), 1.0)
+    return poses_between(one, two, min(max(part, 0.0), 1.0))
+
+
+def poses_between(one: Floats, two: Floats, part: float) -> Floats:
+    """Return poses between two, shape (M, 3) each, at a part of the way from the first, 0 to 1."""
+    between = one + (two - one) * part
     turn = np.remainder(two[:, 2] - one[:, 2] + np.pi, 2 * np.pi) - np.pi
-    between[:, 2] = one[:, 2] + turn * min(max(part, 0.0), 1.0)
+    between[:, 2] = one[:, 2] + turn * part
     return np.asarray(between)

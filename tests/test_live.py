@@ -15,9 +15,12 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet import Trajectory, UserError, load_scenario, run, with_options
-from fuzzyq_bullet.live import KEYS, Spectator, still_meshes
+from fuzzyq_bullet.episode import Episode, planner_of, run_in, world_of
+from fuzzyq_bullet.live import KEYS, Spectator, moving_meshes, still_meshes
+from fuzzyq_bullet.moving import headings_of, poses_at
 from fuzzyq_bullet.physics.window import Line, WindowClosed
-from fuzzyq_bullet.scenario import Scenario
+from fuzzyq_bullet.planning import Decision
+from fuzzyq_bullet.scenario import Scenario, parse_scenario
 from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.explanation import reason
 from tests.helpers.commands import FUZZYQ, Call
@@ -36,6 +39,7 @@ class Recorder:
         self.lines: list[tuple[Line, ...]] = []
         self.texts: list[tuple[str, ...]] = []
         self.path: list[tuple[float, float]] = []
+        self.moved: list[list[tuple[float, ...]]] = []
         self._press = press
 
     def draw(
@@ -44,6 +48,7 @@ class Recorder:
         heading: float,
         lines: Sequence[Line] = (),
         *,
+        moved: Sequence[Sequence[float]] = (),
         passed: Sequence[tuple[float, float]] = (),
         above: Sequence[str] = (),
         below: Sequence[str] = (),
@@ -53,14 +58,18 @@ class Recorder:
         self.lines.append(tuple(lines))
         self.texts.append((*above, *below))
         self.path += passed
+        self.moved.append([tuple(pose) for pose in moved])
         return self._press(len(self.poses))
 
     def sleep(self, seconds: float) -> None:
         self.now += seconds
 
     def watch(self, scenario: Scenario, speed: float = 1.0) -> Trajectory:
-        self.spectator = Spectator(self, scenario, speed, lambda: self.now, self.sleep)
-        return run(scenario, observer=self.spectator)
+        with world_of(scenario) as world:
+            self.spectator = Spectator(
+                self, scenario, speed, lambda: self.now, self.sleep, world.movers.poses
+            )
+            return run_in(world, scenario, planner_of(scenario), observer=self.spectator)
 
 
 @pytest.fixture(scope="module")
@@ -228,6 +237,67 @@ def test_at_the_end_it_stays_and_says_how_it_ended(scenario: Scenario) -> None:
     assert len(window.poses) == count + 30
     assert window.texts[-1][3].startswith("GOAL reached   in ")
     assert window.poses[-1][:2] == pytest.approx(watched.ticks.position[-1].tolist(), abs=1e-12)
+
+
+@pytest.fixture(scope="module")
+def crossing() -> Scenario:
+    return parse_scenario(
+        "name: crossing\narena: {size: [6.0, 4.0]}\nstart: {position: [1.0, 2.0], heading: 0.0}\n"
+        "goal: {position: [2.2, 2.0]}\nobstacles:\n"
+        "  - {shape: cylinder, position: [5, 3], radius: 0.2}\n"
+        "  - {shape: box, position: [4.0, 1.0], size: [0.6, 0.3], motion: {kind: circle, "
+        "centre: [4.0, 2.0], speed: 0.5}}\n"
+        "  - {shape: cylinder, position: [2.8, 3.6], radius: 0.2, motion: {kind: patrol, "
+        "points: [[2.8, 3.6], [2.8, 0.5]], speed: 0.5, stops_for_robot: true}}\n"
+        "  - {shape: cylinder, position: [5, 1], radius: 0.2, motion: {kind: trace, "
+        "poses: [[0, 5, 1, 0]]}}\n"
+    )
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_what_moves_is_where_it_is_at_that_time_and_its_arrow_points_where_it_goes(
+    crossing: Scenario, drive: str
+) -> None:
+    window = Recorder()
+    scenario = with_options(crossing, drive=drive)
+    record = window.watch(scenario, 0.5)
+    assert record.digest() == run(scenario).digest()
+    # A solid and an arrow for each; what stands is not among them, and these not among what stands.
+    assert {len(one) for one in window.moved} == {6} == {len(moving_meshes(scenario))}
+    plain = scenario.model_copy(update={"obstacles": scenario.standing})
+    corners = [sum(len(m.vertices) for m in still_meshes(one)) for one in (scenario, plain)]
+    assert corners[0] == corners[1]
+    headings = headings_of(record)
+    for frame, moved in enumerate(window.moved):
+        time = min(0.5 * FRAME * frame, float(record.ticks.time[-1]))
+        assert np.array(moved[::2]) == pytest.approx(poses_at(record, time), abs=1e-9)
+        tick = int(np.searchsorted(record.ticks.time, time))
+        for k in (0, 1):
+            x, y, heading = moved[2 * k + 1]
+            assert (x, y) == moved[2 * k][:2]
+            about = headings[max(tick - 1, 0) : tick + 2, k]  # between two ticks it may be either's
+            assert np.abs(np.remainder(about - heading + np.pi, 2 * np.pi) - np.pi).min() < 1e-6
+        assert moved[5][0] > 1e3  # out of sight: it goes nowhere
+
+
+def test_the_sentence_tells_of_what_comes() -> None:
+    scenario = parse_scenario(
+        "name: left\narena: {size: [6.0, 4.0]}\nstart: {position: [1.0, 2.0], heading: 0.0}\n"
+        "goal: {position: [5.0, 2.0]}\nobstacles:\n"
+        "  - {shape: cylinder, position: [1.0, 3.5], radius: 0.25, motion: {kind: patrol, "
+        "points: [[1, 3.5], [1, 2.6]], speed: 0.3}}\n"
+    )
+    window, waits = Recorder(), Decision(0.0, 0.0, 0.0, mode="routine")
+    with world_of(scenario) as world:
+        spectator = Spectator(
+            window, scenario, 1.0, lambda: window.now, window.sleep, world.movers.poses
+        )
+        episode = Episode(world, scenario)
+        while episode.now.time < 2.0:
+            before = episode.now
+            episode.advance(waits)
+            spectator(before, waits, episode.now)
+    assert window.texts[-1][3] == "A moving obstacle comes from the left: waits"
 
 
 # --- on a screen

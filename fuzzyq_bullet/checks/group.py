@@ -15,13 +15,11 @@ from pydantic import BaseModel
 
 from fuzzyq_bullet.checks.verdict import AGAIN, MARKS, Status, Verdict
 from fuzzyq_bullet.errors import printable
-from fuzzyq_bullet.studies.statistics import Share, share
+from fuzzyq_bullet.studies.statistics import Share, runs_to_be_sure, share
 from fuzzyq_bullet.wording import plain
 
 Nature: TypeAlias = Literal["steady", "flaky", "broken"]
 
-_Z2 = 3.8415
-"""Square of the normal distribution's two-sided 95 % quantile, as in Wilson's interval."""
 _OUTCOMES = ("collision", "stuck", "timeout")
 """From the worst on; whatever else a run ends with is better."""
 
@@ -166,7 +164,7 @@ def _notes(found: Share, rate: float | None, digests: Sequence[str]) -> list[str
     if rate is None or rate >= 1.0:  # no number of runs can prove that all pass
         return []
     if found.value >= rate > found.low:
-        enough = f"{math.ceil(_Z2 * rate / (1.0 - rate))} runs that all pass would do"
+        enough = f"{runs_to_be_sure(rate)} runs that all pass would do"
         return [
             f"too few runs to be sure of {rate:g}: the interval begins at {found.low:.2f}; "
             + (enough if found.number == found.of else "more runs would tell")

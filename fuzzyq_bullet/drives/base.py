@@ -78,6 +78,8 @@ class Driver(ABC):
         if now.time >= self._read_at + self._reading_lasts - 1e-9:
             self._read_at, self._read_from = now.time, (now.x, now.y)
         still = self._motion is None  # what has no inertia has no speed that matters
+        # It jumps: rays from where it was before tell nothing sure of the way from here.
+        jumped = still and self._read_from != (now.x, now.y)
         return Observation(
             time=now.time,
             position=(now.x + error.x, now.y + error.y),
@@ -91,7 +93,7 @@ class Driver(ABC):
             sensor=self._sensor.at(self._read_from, error.heading),
             motion=self._motion,
             unit=self._radius,
-            uncertainty=self._uncertainty,
+            uncertainty=self._uncertainty + (self._sensor.range if jumped else 0.0),
         )
 
     def _note(self, state: RobotState) -> None:

@@ -58,6 +58,7 @@ class Window:
     Args:
         still: All that never moves.
         model: The robot.
+        moving: Solids that ``draw`` puts from pose to pose, each about the origin.
         background: Colour of the sky.
         paint: Colour of the robot, of its path and of all text.
 
@@ -66,7 +67,13 @@ class Window:
     """
 
     def __init__(
-        self, still: Sequence[Mesh], model: RobotModel, *, background: Colour, paint: Colour
+        self,
+        still: Sequence[Mesh],
+        model: RobotModel,
+        moving: Sequence[Mesh] = (),
+        *,
+        background: Colour,
+        paint: Colour,
     ) -> None:
         if reason := no_screen():
             raise UserError(f"no window can be opened: {reason}; `fuzzyq run` needs no screen")
@@ -90,6 +97,7 @@ class Window:
             self._set(self._api.COV_ENABLE_RENDERING, False)
             for mesh in still:
                 add_mesh(engine, mesh)
+            self._moving = [add_mesh(engine, mesh) for mesh in moving]
             self._robot = VisibleRobot(engine, model)
             self._nose(model)
 
@@ -99,6 +107,7 @@ class Window:
         heading: float,
         lines: Sequence[Line] = (),
         *,
+        moved: Sequence[Sequence[float]] = (),
         passed: Sequence[tuple[float, float]] = (),
         above: Sequence[str] = (),
         below: Sequence[str] = (),
@@ -109,6 +118,7 @@ class Window:
             position: Centre of the robot (m).
             heading: Direction it faces (rad).
             lines: What is drawn over the ground, instead of what was before.
+            moved: Where the moving solids are: x, y (m) and how far each is turned (rad).
             passed: Where it has been since the last call (m).
             above: Lines of text for the upper left corner, in every call as many.
             below: Lines of text for the lower left corner, likewise.
@@ -123,6 +133,8 @@ class Window:
             with silenced(1):  # a window that was closed says so at length
                 self._set(self._api.COV_ENABLE_RENDERING, False)  # until all of it is there
                 self._robot.place(position, heading)
+                for body, pose in zip(self._moving, moved, strict=True):
+                    self._put(body, pose)
                 self._follow(position)
                 self._draw_lines(tuple(lines))
                 for point in (*passed, position):
@@ -146,6 +158,15 @@ class Window:
 
     def _set(self, part: int, on: bool) -> None:
         self._api.configureDebugVisualizer(part, int(on), physicsClientId=self._client)
+
+    def _put(self, body: int, pose: Sequence[float]) -> None:
+        x, y, turn = pose
+        self._api.resetBasePositionAndOrientation(
+            body,
+            (x, y, 0.0),
+            (0.0, 0.0, math.sin(turn / 2), math.cos(turn / 2)),
+            physicsClientId=self._client,
+        )
 
     def _nose(self, model: RobotModel) -> None:
         """Show which way the robot faces; the window gives all of a link one colour."""

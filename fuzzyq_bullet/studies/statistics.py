@@ -9,6 +9,7 @@ Clopper and Pearson where a difference must never look too certain.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -63,6 +64,20 @@ def share(number: int, of: int) -> Share | None:
     value = number / of
     # Rounding could set the figure a hair outside of its own interval.
     return Share(number, of, value, min(low, value), max(high, value))
+
+
+def runs_to_be_sure(rate: float) -> int:
+    """Return how many runs that all succeed lift the lower end of their interval to a share.
+
+    That end is n / (n + z²) for n of n runs, z the normal distribution's quantile (Wilson, 1927).
+
+    Args:
+        rate: The share, 0 to less than 1.
+    """
+    from scipy.stats import norm  # takes two seconds to load
+
+    z = float(norm.ppf((1.0 + LEVEL) / 2))
+    return math.ceil(z * z * rate / (1.0 - rate))
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.footprints import Floats, arrow
 from fuzzyq_bullet.video.legend import legend, note
 from fuzzyq_bullet.video.marks import began, cross, diamond, left_off, passed, reticle
-from fuzzyq_bullet.video.movers import Drawn, DrawnMovers
+from fuzzyq_bullet.video.movers import DrawnMovers, draw_mover
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.plan import Plan
 from fuzzyq_bullet.video.style import MAP, Rect
@@ -122,7 +122,7 @@ class Map:
 
         image = self._trail.image.crop(box)
         for one in movers:
-            self._draw_mover(image, box, one)
+            draw_mover(image, box, one, self.spot)
         for stroke, colour in zip(strokes, style.LINES, strict=False):
             _draw_line(image, box, stroke, colour, unit)
         if target is not None:
@@ -213,19 +213,6 @@ class Map:
             drawn = self._movers.at(float(trajectory.ticks.time[-1]), last)
             return self.spot(next(one.outline for one in drawn if one.number == hit.obstacle))
         return self._plan.outline(trajectory.scenario.obstacles[hit.obstacle])
-
-    def _draw_mover(self, image: Image.Image, box: paint.Box, one: Drawn) -> None:
-        """Draw an obstacle that moves, with an arrow that shows where it goes."""
-        for points, colour in ((one.outline, style.MOVER), (one.nose, style.GROUND)):
-            if points is not None:
-                _fill(image, box, self.spot(points), colour)
-
-
-def _fill(image: Image.Image, box: paint.Box, outline: Floats, colour: style.Colour) -> None:
-    def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:
-        pen.polygon(at(outline), fill=255)
-
-    paint.stamp(image, box, outline, 1.0, colour, draw)
 
 
 def _draw_line(

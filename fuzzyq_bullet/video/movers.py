@@ -9,10 +9,13 @@ import numpy as np
 
 from fuzzyq_bullet.moving import headings_of, poses_at
 from fuzzyq_bullet.shapes.motion import placed
+from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.footprints import Floats, arrow
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from PIL import Image, ImageDraw
 
     from fuzzyq_bullet.shapes import Shape
     from fuzzyq_bullet.trajectory import Trajectory
@@ -64,13 +67,38 @@ class DrawnMovers:
         for k, (index, shape, outline, pieces) in enumerate(self._solids):
             heading = float(self._headings[tick, k])
             x, y, _ = pose = poses[k]
-            size = _NOSE * min(shape.extent(), shape.thickness(), 0.5)
-            nose = None if math.isnan(heading) else arrow((x, y), heading, size)
+            nose = None if math.isnan(heading) else arrow((x, y), heading, nose_size(shape))
             parts = [placed(one, shape.position, pose) for one in pieces]
             drawn.append(Drawn(index, placed(outline, shape.position, pose), parts, nose))
         return drawn
 
 
+def nose_size(shape: Shape) -> float:
+    """Return the size (m) of the arrow on an obstacle."""
+    return _NOSE * min(shape.extent(), shape.thickness(), 0.5)
+
+
 def points_of(drawn: list[Drawn]) -> Floats:
     """Return all points of outlines (m), shape (N, 2)."""
     return np.concatenate([np.empty((0, 2)), *(one.outline for one in drawn)])
+
+
+def draw_mover(
+    image: Image.Image, box: paint.Box, one: Drawn, spot: Callable[[Floats], Floats]
+) -> None:
+    """Draw an obstacle that moves on a map, with an arrow that shows where it goes.
+
+    Args:
+        image: The part of the map that is drawn on.
+        box: Where it lies in the map (pixels).
+        one: The obstacle.
+        spot: Returns where points (m) lie in the map (pixels).
+    """
+    for points, colour in ((one.outline, style.MOVER), (one.nose, style.GROUND)):
+        if points is not None:
+            outline = spot(points)
+
+            def draw(pen: ImageDraw.ImageDraw, at: paint.Scaled, outline: Floats = outline) -> None:
+                pen.polygon(at(outline), fill=255)
+
+            paint.stamp(image, box, outline, 1.0, colour, draw)

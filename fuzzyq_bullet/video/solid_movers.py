@@ -15,7 +15,7 @@ from fuzzyq_bullet.video.movers import Drawn, DrawnMovers
 from fuzzyq_bullet.video.still import photograph
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from fuzzyq_bullet.physics.camera import Lens, Mesh
     from fuzzyq_bullet.trajectory import Trajectory
@@ -93,11 +93,18 @@ class SolidMovers:
         window = paint.box_around(seen, 1.0, self._lens.size)
         if window is None:
             return
-        solids = [meshes.prisms(one.pieces, -0.02, OBSTACLE_HEIGHT, style.MOVER)]
-        if one.nose is not None:
-            top = OBSTACLE_HEIGHT + _LID
-            solids.append(meshes.prisms([one.nose], OBSTACLE_HEIGHT, top, style.GROUND))
+        solids = [body_of(one.pieces), *([] if one.nose is None else [nose_of(one.nose)])]
         yield Placed(one.outline, solids, window)
+
+
+def body_of(pieces: Sequence[Floats]) -> Mesh:
+    """Return the solid over the convex pieces (m) of a moving obstacle."""
+    return meshes.prisms(pieces, -0.02, OBSTACLE_HEIGHT, style.MOVER)
+
+
+def nose_of(arrow: Floats) -> Mesh:
+    """Return the arrow (m) on top of a moving obstacle."""
+    return meshes.prisms([arrow], OBSTACLE_HEIGHT, OBSTACLE_HEIGHT + _LID, style.GROUND)
 
 
 def put_back(

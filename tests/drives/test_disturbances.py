@@ -164,3 +164,25 @@ def test_nothing_is_touched_with_all_disturbances_at_once() -> None:
     for seed in range(6):
         task = realise(random_task(3000 + seed, count=50))
         assert run(Scenario.model_validate({**task.model_dump(), **ALL})).collision is None, seed
+
+
+def test_the_point_robot_waits_for_a_reading_from_where_it_is() -> None:
+    # It steps every 2/3 s: with a reading a second, each serves for two decisions.
+    for seed in (
+        1,
+        4,
+        10,
+        11,
+    ):  # else each ends in a contact at its second step
+        task = with_options(random_task(seed, count=60), drive="kinematic")
+        limits = task.limits.model_copy(update={"time": 8.0})
+        slow = {"sensor": ExactSensor(rate=1.0), "limits": limits}
+        record = run(realise(task).model_copy(update=slow))
+        assert record.collision is None, seed
+        moves = np.hypot(*np.diff(record.ticks.position, axis=0).T)
+        assert moves[0] > 0.0
+        assert (moves[1::2] == 0.0).all()
+    quick = {"sensor": ExactSensor(rate=1.5), "limits": limits}
+    plain = {"sensor": ExactSensor(), "limits": limits}
+    fresh, usual = (run(realise(task).model_copy(update=one)).ticks for one in (quick, plain))
+    assert np.array_equal(fresh.position, usual.position)

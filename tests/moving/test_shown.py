@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from fuzzyq_bullet.doctor import examine
 from fuzzyq_bullet.episode import run
@@ -19,6 +21,7 @@ from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.explanation import reason
 from fuzzyq_bullet.video.map import Map
 from fuzzyq_bullet.video.movers import DrawnMovers
+from fuzzyq_bullet.video.race_map import COLOURS, RaceMap
 from fuzzyq_bullet.video.timeline import Timeline, sensed_at
 from tests.moving.test_moving import disc, room, stand
 
@@ -42,6 +45,59 @@ def test_the_map_shows_it_where_it_is(crossed: Trajectory) -> None:
         left, top = region.x - style.MAP.x, region.y - style.MAP.y
         colour = region.image.getpixel((round(x - left), round(y - top)))
         assert np.abs(np.subtract(colour, style.MOVER)).max() < 12
+
+
+class RaceFilm:
+    """The map of a race as a film shows it: what changed is laid over what was there."""
+
+    def __init__(self, *runs: Trajectory) -> None:
+        self.map = RaceMap(runs, style.MAP, 1.0)
+        self._timelines = [Timeline(run) for run in runs]
+        self.image = Image.new("RGB", style.MAP.size)
+
+    def at(self, time: float) -> Image.Image:
+        moments = [
+            replace(one.at(time), over=time > one.end) for one in self._timelines
+        ]  # as a race has them
+        for region in self.map.draw(moments):
+            self.image.paste(region.image, (region.x - style.MAP.x, region.y - style.MAP.y))
+        return self.image
+
+    def shows(self, x: float, y: float, colour: style.Colour) -> bool:
+        """Return whether a pixel at a place (m), or beside it, has about a colour."""
+        left, top = np.round(self.map.plan.spot([(x, y)])[0] - 1).astype(int).tolist()
+        around = np.asarray(self.image.crop((left, top, left + 3, top + 3)), dtype=int)
+        return bool((np.abs(around - colour).max(axis=-1) < 25).any())
+
+
+def test_the_map_of_a_race_shows_it_where_it_is(crossed: Trajectory) -> None:
+    film = RaceFilm(crossed, crossed)
+    for time in (0.0, 1.0, 3.0, 4.5):
+        film.at(time)
+        places = [0.5 + 0.5 * k for k in (0.0, 1.0, 3.0, 4.0)]
+        here = 0.5 + 0.5 * min(time, 4.0)
+        # Beside the arrow on it. Where it was, there is nothing any more.
+        assert [y for y in places if film.shows(2.78, y, style.MOVER)] == [here]
+        assert film.shows(3.0, here, style.GROUND)  # the arrow
+
+
+def test_one_that_a_robot_has_stopped_is_there_for_each_run_of_a_race() -> None:
+    motion = "kind: patrol, points: [[5, 2], [0.5, 2]], speed: 0.5, stops_for_robot: true"
+    scenario = room(disc(5.0, 2.0, motion, radius=0.3))
+    stands, drives = stand(scenario, 6.5), stand(scenario, 6.5, step=0.05)
+    film = RaceFilm(stands, drives)
+    film.at(1.0)
+    assert film.shows(4.5, 2.22, style.MOVER)  # the same in both: no rim
+    assert not film.shows(4.5 - 0.3, 2.0, COLOURS[0])
+    film.at(6.4)
+    ends = [float(poses_at(run, 6.4)[0, 0]) for run in (stands, drives)]
+    assert ends[1] > ends[0] + 0.2
+    assert film.shows(ends[0] - 0.3, 2.0, COLOURS[0])
+    assert film.shows(ends[1] + 0.3, 2.0, COLOURS[1])
+    drives_on = RaceFilm(stand(scenario, 1.0), drives)
+    drives_on.at(6.4)  # the first is over, and its obstacle with it
+    assert drives_on.shows(ends[1], 2.22, style.MOVER)
+    assert not drives_on.shows(4.5, 2.22, style.MOVER)
 
 
 def test_its_arrow_points_where_it_goes(crossed: Trajectory) -> None:
