@@ -153,12 +153,12 @@ _COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
     ("95 %", lambda line: cell(line.success and f"{line.success.low:.2f}–{line.success.high:.2f}")),
     ("contacts", lambda line: str(line.contacts)),
     ("at fault", lambda line: str(line.at_fault)),
-    ("time", lambda line: told(line.over_bound, ".2f")),
-    ("path", lambda line: cell(line.path, ".2f")),
-    ("turning", lambda line: cell(line.turning, ".2f")),
-    ("jerk", lambda line: cell(line.jerk, ".2f")),
-    ("ms", lambda line: cell(line.decision_ms, ".1f")),
-    ("p95", lambda line: cell(line.decision_p95_ms, ".1f")),
+    ("time ÷ bound", lambda line: told(line.over_bound, ".2f")),
+    ("path ratio", lambda line: cell(line.path, ".2f")),
+    ("rad/m", lambda line: cell(line.turning, ".2f")),
+    ("jerk m/s³", lambda line: cell(line.jerk, ".2f")),
+    ("decision ms", lambda line: cell(line.decision_ms, ".1f")),
+    ("p95 ms", lambda line: cell(line.decision_p95_ms, ".1f")),
     ("score", lambda line: cell(line.score, ".3f")),
 )
 
@@ -183,11 +183,11 @@ def shown(lines: Sequence[Line], about: str) -> Table:
         "drives the true shortest path under the same safety filter, with nothing moving and "
         "nothing disturbed.\n"
         "reached: of the fields that have a way, with Wilson's interval; contacts: in all fields; "
-        "at fault: contacts at which the robot moved. Of the runs that reached the goal: time: "
-        f"over that of the bound, in the fields that both solved [95 %, of {FEWEST} and more]; "
-        "path: driven over shortest path; turning: changes of direction (rad/m); jerk: mean of "
-        "|jerk| (m/s³). ms, p95: processor time of a decision, its rays included: "
-        f"median, and what 95 % stay below{scored}."
+        "at fault: contacts at which the robot moved. Of the runs that reached the goal: time over "
+        f"that of the bound, in the fields that both solved [95 %, of {FEWEST} and more]; driven "
+        "over shortest path; smoothness as changes of direction for each metre (rad/m), and as the "
+        "mean of |jerk|. decision: processor time, its rays included: median, and what 95 % stay "
+        f"below{scored}."
     )
     return Table(caption, ("fields", *(name for name, _ in columns)), rows, left=(0, 1))
 
