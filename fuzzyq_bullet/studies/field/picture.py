@@ -15,8 +15,9 @@ from fuzzyq_bullet.studies.options import PAPER
 
 _LOOKS = ((PAPER, (BLUE, "o")), ((BOUND,), (INK, "D")))
 _OTHERS = (RED, "s")
+_LEAST = 0.6
 _MOST = 4.0
-"""Greatest time over the bound that is drawn to scale; what takes longer stands at the edge."""
+"""Least and greatest time over the bound that are drawn to scale; the rest stands at the edge."""
 
 
 def field_picture(lines: Sequence[Line], about: str) -> Figure:
@@ -28,7 +29,7 @@ def field_picture(lines: Sequence[Line], about: str) -> Figure:
     figure = new_figure(2.6 + 2.3 * max(len(kinds), 2), height)
     figure.suptitle(f"Planners in the same fields: {about}", fontsize=12, weight="bold", color=INK)
     figure.supxlabel(
-        "circle: the paper's; square: others; diamond: the bound. "
+        "circle: the paper's; square: others; diamond: the bound.\n"
         f"Lines: 95 %, of a time where both solved {FEWEST} fields or more.",
         fontsize=9, color=INK,
     )  # fmt: skip
@@ -55,7 +56,7 @@ def field_picture(lines: Sequence[Line], about: str) -> Figure:
         one.xaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
         one.set_xlabel("reached")
     for one in axes[1]:
-        one.set_xlim(0.9, _MOST + 0.9)
+        one.set_xlim(_LEAST - 0.1, _MOST + 0.9)
         one.xaxis.set_major_locator(MaxNLocator(integer=True))
         one.axvline(1.0, color=INK, lw=1)
         one.set_xlabel("time ÷ bound")
@@ -92,11 +93,13 @@ def _time(axes: Axes, line: Line, place: int) -> None:
         axes.annotate("–", (1.0, place), (6, 0), textcoords="offset points", va="center", color=INK)
         return
     value = line.over_bound.value
-    low, high = value, value
+    low = high = max(value, _LEAST)
     if line.over_bound.pairs >= FEWEST:
-        low, high = line.over_bound.low, line.over_bound.high
+        low, high = max(line.over_bound.low, _LEAST), line.over_bound.high
     axes.plot([min(low, _MOST), min(high, _MOST)], [place, place], color=colour, lw=1.5)
-    axes.plot(min(value, _MOST), place, ">" if value > _MOST else mark, color=colour, ms=6)
+    axes.plot(
+        min(max(value, _LEAST), _MOST), place, ">" if value > _MOST else mark, color=colour, ms=6
+    )
     axes.annotate(
         f"{value:.2f}", (min(high, _MOST), place), (7, 0), textcoords="offset points", va="center",
         fontsize=8, color=INK,
