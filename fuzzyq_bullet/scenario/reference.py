@@ -31,8 +31,10 @@ obstacles:
 This page is made of the schema by `fuzzyq schema --markdown`; with `--plugin FILE` it has the keys
 of your own file as well. `fuzzyq schema` prints the JSON Schema itself, for editors.
 """
-_ELSEWHERE = {"ControllerDefinition": "a [controller](rules.md)"}
+_ELSEWHERE = {"ControllerDefinition": "a [controller](../how-to/rules.md)"}
 """Models that a page of their own explains."""
+_WITHIN = ("motion", "movers")
+"""Keys within those of an obstacle or a layout that have keys of their own."""
 
 
 def scenario_reference() -> str:
@@ -67,9 +69,9 @@ def _section(key: str, node: Node, models: Mapping[str, Node]) -> Iterable[str]:
     )
     yield ""
     yield _table(_keys_of_all(members, chosen_by, models))
-    for motion in (v for one in members for k, v in one["properties"].items() if k == "motion"):
-        yield from _section("motion", motion, models)
-        return
+    for k, inner in members[0]["properties"].items():
+        if k in _WITHIN:
+            yield from _section(k, inner, models)
 
 
 def _choices(node: Node) -> list[Node]:

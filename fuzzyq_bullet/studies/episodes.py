@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from fuzzyq_bullet.metrics import Result
 from fuzzyq_bullet.planning import PlannerSettings, settings_for
 from fuzzyq_bullet.scenario import Drive, Limits, Robot, Scenario, cellular_task, random_task
+from fuzzyq_bullet.scenario.layouts import Wanderers
 from fuzzyq_bullet.sensors import ExactSensor
 from fuzzyq_bullet.trajectory import Outcome
 
@@ -29,6 +30,8 @@ MOST_SEED = (2**63 - 1) // MOST_RUNS - 1
 _LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 _LONGEST = 300
 _ADDRESS = re.compile(r"0x[0-9a-fA-F]+")
+_LAST_OF_ALL = "error"
+"""The last column that every table has. New ones come behind it, and earlier tables lack them."""
 
 
 @dataclass(frozen=True)
@@ -64,13 +67,14 @@ class Environment:
 
 
 class Outfit(BaseModel):
-    """What drives through the environments of a sweep instead of their own robot.
+    """What drives through the environments of a sweep instead of their own robot, and what moves.
 
     Attributes:
         robot: Its model; None for that of the environment.
         max_speed: Its greatest speed (m/s); None for that of the model, or of the environment.
         range: How far it sees (m); None for 5·S_p.
         disturbed: What disturbs it: keys of ``sensor`` and ``robot`` in a scenario file.
+        movers: What wanders in its way: keys of ``random.movers``; what stands is the same.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -79,6 +83,7 @@ class Outfit(BaseModel):
     max_speed: float | None = None
     range: float | None = None
     disturbed: dict[str, float] = Field(default_factory=dict)
+    movers: Wanderers | None = None
 
     def on(self, task: Scenario) -> Scenario:
         """Return a scenario with this robot in it.
@@ -93,7 +98,10 @@ class Outfit(BaseModel):
         noise = {key: v for key, v in self.disturbed.items() if key not in slips}
         robot = Robot.model_validate({**own, **model, **given, **slips})
         sensor = ExactSensor.model_validate({"range": self.range, **noise})
-        return task.model_copy(update={"robot": robot, "sensor": sensor})
+        random = task.random
+        if self.movers is not None and random is not None:
+            random = random.model_copy(update={"movers": self.movers})
+        return task.model_copy(update={"robot": robot, "sensor": sensor, "random": random})
 
 
 USUAL = Outfit()
@@ -196,6 +204,8 @@ class Row(BaseModel):
         mean_jerk: Mean of |jerk| (m/s³); None in the kinematic drive.
         rules_turn: Share of the decisions near something in which the rules turn the robot; None
             for a planner without rules.
+        at_fault: Whether the robot was at fault for its contact; None without one, and in tables
+            of versions that did not tell.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -220,6 +230,7 @@ class Row(BaseModel):
     turning_rad: float | None = None
     mean_jerk: float | None = None
     rules_turn: float | None = None
+    at_fault: bool | None = None
 
     @property
     def place(self) -> Place:
@@ -277,17 +288,19 @@ def as_csv(rows: Iterable[Row]) -> str:
 
 
 def from_csv(text: str) -> list[Row]:
-    """Return the rows of a CSV as ``as_csv`` writes it.
+    """Return the rows of a CSV as ``as_csv`` writes it, or wrote it with fewer columns.
 
     Raises:
         ValueError: If it is none; says in which line, and what is wrong there.
     """
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    names = list(Row.model_fields)
+    every = list(Row.model_fields)
+    least = every.index(_LAST_OF_ALL) + 1
     rows: dict[Key, Row] = {}
     try:
-        if next(reader, None) != names:
-            raise ValueError(f"must have the columns {','.join(names)}")
+        names = next(reader, [])
+        if names != every[: max(least, len(names))]:
+            raise ValueError(f"must have the columns {','.join(every)}")
         for cells in reader:
             if len(cells) != len(names):
                 raise ValueError(f"{len(cells)} columns instead of {len(names)}")

@@ -12,6 +12,7 @@ import numpy as np
 
 from fuzzyq_bullet.scenario.layouts.base import LAYOUTS, AnyLayout, Layout, register_layout
 from fuzzyq_bullet.scenario.layouts.scatter import Random  # the default comes first
+from fuzzyq_bullet.scenario.layouts.wanderers import Wanderers
 
 from fuzzyq_bullet.scenario.layouts.traps import Arc, LongWall, Semicircle, UShape  # isort: skip
 from fuzzyq_bullet.scenario.layouts.rectangles import Rectangles  # isort: skip
@@ -26,8 +27,9 @@ def realise(scenario: Scenario, seed: int | None = None) -> Scenario:
     """Return the scenario with its ``random`` part replaced by the obstacles it stands for.
 
     The result is what is run, recorded and saved: it has no ``random`` part, its obstacles are the
-    listed ones followed by the drawn ones, and ``seed`` is the one they were drawn with. The same
-    scenario and seed give the same obstacles. Coordinates are rounded to 0.1 mm.
+    listed ones followed by the drawn ones, those that wander last, and ``seed`` is the one they
+    were drawn with. The same scenario and seed give the same obstacles; what stands is the same
+    whether anything wanders or not. Coordinates are rounded to 0.1 mm.
 
     Args:
         scenario: A scenario that ``check`` finds nothing wrong with.
@@ -48,6 +50,8 @@ def realise(scenario: Scenario, seed: int | None = None) -> Scenario:
         assert there.random is not None
         drawn = tuple(one.moved(x, y, 0.0) for one in there.random.draw(there, rng))
     obstacles = (*scenario.obstacles, *drawn)
+    if scenario.random.movers is not None:
+        obstacles += scenario.random.movers.draw(scenario, obstacles, seed)
     return scenario.model_copy(update={"obstacles": obstacles, "random": None, "seed": seed})
 
 
@@ -63,6 +67,7 @@ __all__ = [
     "Rectangles",
     "Semicircle",
     "UShape",
+    "Wanderers",
     "realise",
     "register_layout",
 ]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeVar
+
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 
 from fuzzyq_bullet.quantities import MAX_OBSTACLES, Model, ModelRegistry
+from fuzzyq_bullet.scenario.layouts.wanderers import Wanderers
 from fuzzyq_bullet.shapes import Obstacle
 
 if TYPE_CHECKING:
@@ -21,6 +24,17 @@ class Layout(Model):
     """The ``random`` part of a scenario. Subclasses narrow ``layout`` to their own name."""
 
     layout: str
+    movers: Wanderers | None = Field(
+        default=None, description="Obstacles that wander among those that are drawn."
+    )
+
+    @model_serializer(mode="wrap")
+    def _without_movers(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out that nothing wanders."""
+        told: dict[str, Any] = handler(self)
+        if self.movers is None:
+            told.pop("movers", None)
+        return told
 
     def draw(self, scenario: Scenario, rng: np.random.Generator) -> tuple[Obstacle, ...]:
         """Return the obstacles, beside those that the scenario lists.

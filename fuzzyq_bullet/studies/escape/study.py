@@ -208,7 +208,7 @@ class Escape(Study):
             weights=None if not weights else ",".join(f"{one:g}" for one in weights),
             rules=rules_told(plan.planner),
             seed=plan.seed,
-            **plan.outfit.model_dump(exclude={"disturbed"}),
+            **plan.outfit.model_dump(exclude={"disturbed", "movers"}),
             beside=bool(plan.beside),
         )
 
