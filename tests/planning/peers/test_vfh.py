@@ -155,3 +155,8 @@ def test_it_passes_one_obstacle():
     assert record.outcome == "goal"
     assert record.ticks.time[-1] < 18.0
     assert record.ticks.position[:, 1].min() < 4.7  # by the shorter side
+
+
+def test_the_lower_threshold_is_not_above_the_upper():
+    with pytest.raises(ValueError, match=r"must be at most high, 4\.0"):
+        VfhSettings(high=4.0, low=5.0)
