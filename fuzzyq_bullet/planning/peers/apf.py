@@ -9,11 +9,12 @@
   is multiplied by gⁿ, n = 2, where g falls with the distance to the goal; its gradient has a second
   part towards the goal. Here g = min(1, distance / ρ0): farther away the field is Khatib's, where
   the paper's would grow without bound.
-- *Local minima*: X. Yun, K.-C. Tan, A wall-following method for escaping local minima in potential
-  field based motion planning, International Conference on Advanced Robotics, 1997. If the robot has
-  come no nearer to the goal for some time, it follows the wall that holds it up. It goes back to the
-  field once it is nearer to the goal than where it was trapped, and the goal's direction is free.
-  If it is trapped there again, or the escape takes too long, it tries the other side.
+- *Local minima*: X. Yun, K.-C. Tan, A wall-following method for escaping local minima in
+  potential field based motion planning, International Conference on Advanced Robotics, 1997. If the
+  robot has come no nearer to the goal for some time, it follows the wall that holds it up. It goes
+  back to the field once it is nearer to the goal than where it was trapped, and the goal's
+  direction is free. If it is trapped there again, or the escape takes too long, it tries the other
+  side.
 
 ρ is measured from the edge of the robot's disc. The force is a velocity: its direction is the
 heading, its size up to 1 the part of the greatest speed. Left out: Khatib's damping and inertia,

@@ -40,7 +40,11 @@ Behavior: TypeAlias = Literal["HL", "ORCA", "HRVO", "SocialForce"]
 Value: TypeAlias = Annotated[bool, Strict()] | Annotated[int, Strict()] | Number
 TUNED: Mapping[Behavior, Mapping[str, bool | int | float]] = {
     "HL": {},
-    "ORCA": {},
+    "ORCA": {
+        "time_horizon": 1.0,
+        "static_time_horizon": 1.0,
+        "treat_obstacles_as_agents": False,
+    },
     "HRVO": {},
     "SocialForce": {},
 }

@@ -4,21 +4,21 @@ I. Kamon, E. Rimon, E. Rivlin: TangentBug: a range-sensor-based navigation algor
 Journal of Robotics Research 17(9), 1998. It has two modes:
 
 - *Motion to goal*: along the local tangent graph, which is what a scan of limited range tells: the
-  robot, the goal where it can be reached straight, and both ends of every obstacle that is seen. The
-  robot takes the node V with the least d(x, V) + d(V, goal), among those that are nearer to the goal
-  than the robot is. If there is none, it has come to a local minimum of the distance to the goal on
-  the boundary of an obstacle.
+  robot, the goal where it can be reached straight, and both ends of every obstacle that is seen.
+  The robot takes the node V with the least d(x, V) + d(V, goal), among those that are nearer to the
+  goal than the robot is. If there is none, the robot has come to a local minimum of the distance to
+  the goal on the boundary of an obstacle.
 - *Boundary following*: round that obstacle, to one side. d_followed is the least distance to the
-  goal of any point of the boundary that was seen since; d_reach the least of any point that can be
-  reached straight. The robot leaves the boundary as soon as d_reach < d_followed. If it comes back
-  to where it began without that, the goal cannot be reached, and it says so.
+  goal of any point of the boundary that was seen since; d_reach the least of any other point that
+  can be reached straight. The robot leaves the boundary as soon as d_reach < d_followed. If it
+  comes back to where it began without that, the goal cannot be reached, and it says so.
 
 The paper's robot is a point. Here the free distance of the disc along a heading takes the place of
-a ray, so that the robot is a point in its configuration space. What is different: d_followed does not
-begin at infinity but at the distance from the local minimum, and it must be undercut by 5 cm, or
-noise of a few millimetres would let the robot leave at once. The node that was chosen before stays
-unless another is shorter by 10 cm. Left out: the paper's transition of the boundary following to
-short cuts over convex corners, which the range of 1 m hardly gives, and its three-dimensional heir.
+a ray, so that the robot is a point among grown obstacles. What is different: d_reach must be less by
+5 cm, or the robot would leave at once by noise of a few millimetres. The node that was chosen before
+stays unless another is shorter by 10 cm. Along a boundary a ray turns until enough is free
+(``wall_following``), in place of the paper's path along local tangents. Left out: the paper's
+stop at the goal's own visibility, which is the episode's.
 """
 
 from __future__ import annotations

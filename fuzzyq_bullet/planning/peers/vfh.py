@@ -10,8 +10,8 @@ International Conference on Robotics and Automation, 1998. Each decision goes th
    a and b are such that m = c² at the rim of the window.
 3. *Binary histogram*: a sector becomes blocked above τ_high, free below τ_low, and else stays what
    it was (hysteresis).
-4. *Masked histogram*: while the robot moves, what stands within the circle of its tightest turn, v/ω
-   wide, blocks what lies beyond it.
+4. *Masked histogram*: while the robot moves, what stands within the circle of its tightest turn, of
+   radius v/ω, blocks what lies beyond it.
 5. *Candidates*: the middle of a narrow opening; the two edges of a wide one, half of its least
    width inside, and the goal's direction if it lies between them.
 6. *Cost*: μ1·Δ(c, goal) + μ2·Δ(c, where it faces) + μ3·Δ(c, what was chosen before); least wins.
@@ -31,7 +31,8 @@ from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
+from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.planning.base import Floats, Observation
 from fuzzyq_bullet.planning.decision import Decision
@@ -79,6 +80,14 @@ class VfhSettings(PeerSettings):
     dense: Annotated[Number, Field(gt=0.0, le=1000.0)] = Field(
         default=20.0, description="h_m: at this density of the direction taken it goes slowest."
     )
+
+    @field_validator("low")
+    @classmethod
+    def _below_high(cls, value: float, info: ValidationInfo) -> float:
+        high = info.data.get("high")
+        if high is not None and value > high:
+            raise PydanticCustomError("low", "must be at most high, {high}", {"high": high})
+        return value
 
 
 class CertaintyGrid:

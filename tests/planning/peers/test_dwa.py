@@ -93,8 +93,3 @@ def test_it_slows_down_before_one_obstacle_and_passes_it():
     assert speed[(x > 3.5) & (x < 4.7)].min() < 0.55
     assert speed[(x > 2.0) & (x < 3.0)].min() > 0.59
     assert record.ticks.time[-1] < 20.0
-
-
-def test_the_points_robot_cannot_be_driven_by_twists():
-    with pytest.raises(Exception, match="needs the drive wheels, not kinematic"):
-        drive("dwa", drive="kinematic")

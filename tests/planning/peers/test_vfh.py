@@ -113,17 +113,17 @@ def test_between_the_thresholds_a_sector_stays_what_it_was():
     assert opened.heading == pytest.approx(0.0)
 
 
-def test_while_it_is_fast_it_does_not_turn_towards_what_is_beside_it():
-    beside = field((0.0, 0.45, 0.2))
-    goal = (-0.5, 5.0)
-    slow = settled(VfhPlanner(VfhSettings(safety=0.05)), moving(beside, (0.0, 0.0), goal=goal))
-    fast = settled(
-        VfhPlanner(VfhSettings(safety=0.05)), moving(beside, (0.0, 0.0), goal=goal, speed=0.6)
-    )
-    assert wrap_angle(slow.heading) > math.radians(
-        130.0
-    )  # round it by the rear: it can turn on the spot
-    assert abs(wrap_angle(fast.heading)) < math.radians(70.0)
+def test_while_it_is_fast_it_does_not_turn_left_past_what_is_on_its_left():
+    ahead_on_the_left = field((0.32, 0.38, 0.1))
+    behind = (5.0 * math.cos(2.6), 5.0 * math.sin(2.6))
+    settings = VfhSettings(turn_cost=0.0, change_cost=0.0)
+
+    def heading(speed):
+        seen = moving(ahead_on_the_left, (0.0, 0.0), goal=behind, speed=speed)
+        return wrap_angle(settled(VfhPlanner(settings), seen).heading)
+
+    assert heading(0.0) == pytest.approx(2.6)  # it can turn on the spot
+    assert not 0.5 < heading(0.6) < 3.1  # its tightest turn to the left would meet the obstacle
 
 
 def test_it_prefers_what_it_chose_before():
@@ -155,3 +155,8 @@ def test_it_passes_one_obstacle():
     assert record.outcome == "goal"
     assert record.ticks.time[-1] < 18.0
     assert record.ticks.position[:, 1].min() < 4.7  # by the shorter side
+
+
+def test_the_lower_threshold_is_not_above_the_upper():
+    with pytest.raises(ValueError, match=r"must be at most high, 4\.0"):
+        VfhSettings(high=4.0, low=5.0)
