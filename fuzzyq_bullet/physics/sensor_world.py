@@ -163,7 +163,11 @@ class SensorWorld:
         vertices.clear()
         triangles.clear()
         body: int = self._api.createMultiBody(
-            0.0, shape, basePosition=(0.0, 0.0, self.model.sensor_height), physicsClientId=client
+            0.0,
+            shape,
+            basePosition=(0.0, 0.0, self.model.sensor_height),
+            useMaximalCoordinates=True,
+            physicsClientId=client,
         )
         return body
 
