@@ -191,5 +191,6 @@ def _bounds(field: Any) -> dict[str, Any]:
 def _option_of(name: str, field: Any) -> Any:
     """Return what the command line has to know of a field."""
     bounds = {} if name == "seed" else _bounds(field)  # whose bounds are longer than the help
-    metavar = "FILE" if field.annotation == Path | None else None
+    usual = "FILE" if field.annotation == Path | None else None
+    metavar = (field.json_schema_extra or {}).get("metavar", usual)
     return typer.Option(help=field.description, metavar=metavar, **bounds)

@@ -35,7 +35,9 @@ def run_study(
     replace: bool,
     json: bool,
 ) -> None:
-    """Run a study, write what it found, and print it; exit code 1 when targets are missed.
+    """Run a study, write what it found, and print it.
+
+    Exit code 1 when targets are missed, 2 when an input of several could not be read.
 
     Args:
         study: What is asked.
@@ -117,12 +119,18 @@ def _refuse_others(study: Study, out: Path) -> None:
 
 
 def _judge(findings: Findings, last: Swept) -> None:
-    """Say what is wrong; then the exit code is 1."""
+    """Say what is wrong; then the exit code is 1, or 2 where an input could not be read."""
+    from fuzzyq_bullet.cli.process import say_error
+
     errors = sum(row.outcome == "error" for row in last.rows)
     if errors:
         say(f"{errors} episodes failed themselves: see the column error", style="bold")
     if findings.missed:
         say("targets missed: " + "; ".join(findings.missed), style="bold")
+    for problem in findings.problems:
+        say_error(problem)
+    if findings.problems:
+        raise typer.Exit(2)
     if errors or findings.missed:
         raise typer.Exit(1)
 

@@ -6,6 +6,11 @@ from fuzzyq_bullet.planning.decision import MODES, Decision, Mode
 from fuzzyq_bullet.planning.fuzzy import FuzzyPlanner
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
+from fuzzyq_bullet.planning.peers.apf import ApfPlanner, ApfSettings
+from fuzzyq_bullet.planning.peers.dwa import DwaPlanner, DwaSettings
+from fuzzyq_bullet.planning.peers.navground import NavgroundPlanner, NavgroundSettings
+from fuzzyq_bullet.planning.peers.tangent_bug import TangentBugPlanner, TangentBugSettings
+from fuzzyq_bullet.planning.peers.vfh import VfhPlanner, VfhSettings
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.process import ProcessPlanner, ProcessSettings
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS, DirectPlanner
@@ -30,9 +35,13 @@ __all__ = [
     "DEFAULT_PLANNER",
     "MODES",
     "Answer",
+    "ApfPlanner",
+    "ApfSettings",
     "CommandSettings",
     "Decision",
     "DirectPlanner",
+    "DwaPlanner",
+    "DwaSettings",
     "FuzzyPlanner",
     "FuzzyQLambdaPlanner",
     "FuzzyQLambdaSettings",
@@ -41,6 +50,8 @@ __all__ = [
     "ImprovedFuzzySettings",
     "Mode",
     "Motion",
+    "NavgroundPlanner",
+    "NavgroundSettings",
     "Observation",
     "Planner",
     "PlannerSettings",
@@ -50,7 +61,11 @@ __all__ = [
     "QLearningSettings",
     "RangeSensor",
     "RoutineSettings",
+    "TangentBugPlanner",
+    "TangentBugSettings",
     "TwistCommand",
+    "VfhPlanner",
+    "VfhSettings",
     "WheelCommand",
     "make_planner",
     "planner_names",
@@ -78,3 +93,10 @@ register_planner(
     lambda settings, rng: FuzzyQLambdaPlanner(settings),
 )
 register_planner("process", ProcessSettings, ProcessPlanner)
+register_planner("dwa", DwaSettings, lambda settings, rng: DwaPlanner(settings))
+register_planner("vfh", VfhSettings, lambda settings, rng: VfhPlanner(settings))
+register_planner("apf", ApfSettings, lambda settings, rng: ApfPlanner(settings))
+register_planner(
+    "tangent-bug", TangentBugSettings, lambda settings, rng: TangentBugPlanner(settings)
+)
+register_planner("navground", NavgroundSettings, lambda settings, rng: NavgroundPlanner(settings))

@@ -27,7 +27,10 @@ from fuzzyq_bullet.planning.settings import (
     QLearningSettings,
     RoutineSettings,
 )
-from fuzzyq_bullet.scenario import MAX_OBSTACLES, Drive
+from fuzzyq_bullet.robots import no_robot, robot_names
+from fuzzyq_bullet.scenario import MAX_OBSTACLES, Drive, Scenario, cellular_task
+from fuzzyq_bullet.scenario.checks import range_conflict
+from fuzzyq_bullet.studies.episodes import Outfit
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 NONE = "none"
@@ -104,6 +107,38 @@ def one_drive_of(text: str) -> Drive:
     if len(drives) > 1:
         raise UserError(f"--drive: one at a time here: {', '.join(drives)}")
     return drives[0]
+
+
+def outfit_with(
+    robot: str | None, max_speed: float | None, sight: float | None, task: Scenario | None = None
+) -> Outfit:
+    """Return what drives instead of the robot of an environment.
+
+    Args:
+        robot: Name of its model; None for that of the environment.
+        max_speed: Its greatest speed (m/s); None for that of its model.
+        sight: How far it sees (m); None for 5·S_p.
+        task: Where it has to be possible; by default a cellular field.
+
+    Raises:
+        UserError: If there is no such robot, or it cannot be so fast or see so far.
+    """
+    outfit = Outfit(robot=robot, max_speed=max_speed, range=sight)
+    if robot is not None and robot not in robot_names():
+        raise UserError(f"--robot: {no_robot(robot)}")
+    try:
+        equipped = outfit.on(task or cellular_task(0))
+    except ValidationError as error:
+        options = {"max_speed": "--max-speed", "range": "--range"}
+        raise UserError(
+            *(
+                f"{options[str(one['loc'][-1])]}: {one['msg']}, got {one['input']:g}"
+                for one in error.errors(include_url=False)
+            )
+        ) from error
+    if (wrong := range_conflict(equipped)) is not None:
+        raise UserError(f"--range: {wrong}")
+    return outfit
 
 
 def planner_of(name: str, weights: str | None) -> PlannerSettings:

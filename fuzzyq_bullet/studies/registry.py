@@ -16,6 +16,7 @@ _BUNDLED = {
     "escape": "fuzzyq_bullet.studies.escape.study",
     "familiar": "fuzzyq_bullet.studies.familiar.study",
     "robust": "fuzzyq_bullet.studies.robust.study",
+    "field": "fuzzyq_bullet.studies.field.study",
 }
 """The modules of the package's own, in the order of a report."""
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,49}")

@@ -102,6 +102,7 @@ class Findings:
         data: All of it for programs: ``NAME.json``.
         remarks: Lines below the tables.
         missed: Targets that were missed: exit code 1.
+        problems: Inputs that could not be read, a line each: exit code 2.
         pictures: The first is ``NAME.png``; all are on the page.
         headline: What stands at the top of the page.
         details: Tables that stand on the page alone.
@@ -111,6 +112,7 @@ class Findings:
     data: Mapping[str, Any]
     remarks: tuple[str, ...] = ()
     missed: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()
     pictures: tuple[Picture, ...] = ()
     headline: Table | None = None
     details: tuple[Table, ...] = ()
@@ -129,13 +131,13 @@ class Study(BaseModel):
     * ``findings`` returns what the rows say: tables, and data for programs.
 
     A study of several sweeps, each planned by what came of those before, overrides ``stages``
-    instead of ``plan`` and ``planner_set``, and has an entry in ``kinds`` and ``folders`` for each;
-    ``recalled`` then tells a report how to get from the plans back to the options.
+    instead of ``plan`` and ``planner_set``, and has an entry in ``stage_plans`` and ``folders`` for
+    each; ``recalled`` then tells a report how to get from the plans back to the options.
 
     Attributes:
         name: What the command line and the files call it.
         title: What the report calls it.
-        kinds: The class of each stage's plan, by the name of the stage.
+        stage_plans: The class of each stage's plan, by the name of the stage.
         folders: Where each stage lies in the folder of the study, if not there.
         width: Columns that its tables need.
         pictured: Whether there is a ``NAME.png``.
@@ -148,7 +150,7 @@ class Study(BaseModel):
 
     name: ClassVar[str]
     title: ClassVar[str] = ""
-    kinds: ClassVar[Mapping[str, type[Plan]]] = {}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {}
     folders: ClassVar[Mapping[str, str]] = {}
     width: ClassVar[int] = 100
     pictured: ClassVar[bool] = False
@@ -198,7 +200,7 @@ class Study(BaseModel):
     @classmethod
     def stage_kinds(cls) -> Mapping[str, type[Plan]]:
         """Return the class of each stage's plan, by the name of the stage."""
-        return cls.kinds or {cls.name: FieldsPlan}
+        return cls.stage_plans or {cls.name: FieldsPlan}
 
     @classmethod
     def recalled(cls, plans: Mapping[str, Any]) -> Study | None:

@@ -14,7 +14,7 @@ import pytest
 
 from fuzzyq_bullet import UserError
 from fuzzyq_bullet.workers.cluster import cluster
-from tests.helpers.commands import Call
+from tests.helpers.commands import SHORT, Call
 
 pytest.importorskip("distributed", reason="needs the extra cluster")
 
@@ -66,6 +66,23 @@ def test_two_workers_of_a_cluster_write_the_same_table_as_one_process_here(
     assert here.returncode == 0, here.stderr
     for name in ("success.csv", "success.json"):
         assert (tmp_path / "afar" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
+
+
+def test_worlds_of_this_machine_go_to_the_workers_of_a_cluster(
+    scheduler: str, fuzzyq: Call, tmp_path: Path
+) -> None:
+    worlds = tmp_path / "worlds"
+    worlds.mkdir()
+    (worlds / "a.yaml").write_text(SHORT)
+    (worlds / "b.yaml").write_text(SHORT.replace("short", "other").replace("1.4, 0.7", "1.3, 0.9"))
+    sweep = ("bench", "field", "--planners", "improved-fuzzy", "--worlds", worlds)
+    afar = fuzzyq(*sweep, "--out", tmp_path / "afar", "--backend", "dask", "--scheduler", scheduler)
+    assert afar.returncode == 0, afar.stderr
+    here = fuzzyq(*sweep, "--out", tmp_path / "here", "--jobs", "1")
+    assert here.returncode == 0, here.stderr
+    table = (tmp_path / "here" / "worlds.csv").read_bytes()
+    assert table.count(b",goal,") == 4
+    assert (tmp_path / "afar" / "worlds.csv").read_bytes() == table
 
 
 def test_a_scheduler_that_is_not_there_is_one_line(fuzzyq: Call, tmp_path: Path) -> None:

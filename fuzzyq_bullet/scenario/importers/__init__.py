@@ -18,6 +18,7 @@ from fuzzyq_bullet.scenario.importers.registry import (
     Imported,
     Importer,
     import_map,
+    importable,
     register_importer,
 )
 
@@ -29,6 +30,7 @@ __all__ = [
     "gazebo",
     "images",
     "import_map",
+    "importable",
     "irsim",
     "movingai",
     "options_of",

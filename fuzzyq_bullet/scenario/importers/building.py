@@ -21,6 +21,8 @@ _LARGEST = 1000.0
 """Greatest coordinate and side of an arena (m), as ``quantities`` allows them."""
 _NANO = 9
 """Decimals of a metre to which outlines of maps are rounded: no edge moves by more than 1 nm."""
+_MARGIN = 1.0
+"""Free space about start and goal in a world without walls (m)."""
 _USUAL_TIME = 120.0
 _LONGEST_TIME = 3600.0
 
@@ -38,11 +40,13 @@ def scenario_of(path: Path, found: ForeignMap, options: ImportOptions) -> Scenar
     if options.crop is not None:
         bounds = _cropped(path, bounds, options.crop)
         obstacles = [part for one in obstacles for part in cropped(one, bounds)]
-    _refuse_large(path, bounds, len(obstacles))
-    left, bottom, right, top = (round(edge, _NANO) for edge in bounds)
     start = options.start or found.start
     heading = options.heading if options.start else found.heading
     goal = options.goal or found.goal
+    if not found.walls and options.crop is None:
+        bounds = _around(bounds, start, goal)
+    _refuse_large(path, bounds, len(obstacles))
+    left, bottom, right, top = (round(edge, _NANO) for edge in bounds)
     data: dict[str, Any] = {
         "name": re.sub(r"[^A-Za-z0-9._-]+", "-", path.stem).lstrip("._-")[:100] or "map",
         "description": f"Imported from {path.name}."[:2000],
@@ -65,6 +69,15 @@ def scenario_of(path: Path, found: ForeignMap, options: ImportOptions) -> Scenar
     time = float(math.ceil(min(max(_USUAL_TIME, seconds), _LONGEST_TIME)))
     limits = scenario.limits.model_copy(update={"time": time})
     return scenario.model_copy(update={"limits": limits})
+
+
+def _around(bounds: Bounds, *places: tuple[float, float] | None) -> Bounds:
+    """Return bounds with places in them: a world without walls goes on beyond what stands in it."""
+    left, bottom, right, top = bounds
+    for x, y in (place for place in places if place is not None):
+        left, right = min(left, x - _MARGIN), max(right, x + _MARGIN)
+        bottom, top = min(bottom, y - _MARGIN), max(top, y + _MARGIN)
+    return Bounds(left, bottom, right, top)
 
 
 def asked_for(scenario: Scenario, options: ImportOptions) -> Scenario:

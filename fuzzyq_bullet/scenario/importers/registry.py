@@ -89,6 +89,11 @@ def register_importer(
     return register
 
 
+def importable() -> tuple[str, ...]:
+    """Return the suffixes that there is an importer for."""
+    return tuple(_importers)
+
+
 def import_map(path: Path, options: ImportOptions | None = None) -> Imported:
     """Return the scenario that a map stands for, checked that it can be run.
 

@@ -31,8 +31,8 @@ LOST = 0.5
 """How far on the robot may find itself with the next decision (m)."""
 ASIDE = tuple(math.radians(side * turn) for turn in (0, 1, 2, 4, 8, 16, 30) for side in (1, -1))[1:]
 """Turns aside (rad) to try where no point of the path is in sight: the robot came off it."""
-SLACK = (0.23, 0.25)
-"""Radii of discs (m) that have more room on the path than the robot needs: it need not stop ..."""
+SLACK = (0.03, 0.05)
+"""More room (m) on the path than the robot itself needs: it need not stop ..."""
 LONGER = 1.02
 """... and takes such a path if it is no longer than this, in shortest paths."""
 
@@ -78,7 +78,7 @@ def drive_shortest_path(scenario: Scenario) -> Trajectory:
     """Drive a realised scenario along its shortest path, as far from things as costs nothing."""
     route = shortest_path(scenario, room_of(scenario)) or shortest_path(scenario)
     for room in SLACK:
-        wider = shortest_path(scenario, room)
+        wider = shortest_path(scenario, scenario.robot.radius + room)
         if route is not None and wider is not None and wider.length < LONGER * route.length:
             route = wider
     start, goal = scenario.start.position, scenario.goal.position

@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, replace
 from typing import Any, ClassVar
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import PlannerSettings
 from fuzzyq_bullet.planning.settings import RecoverySettings
-from fuzzyq_bullet.robots import no_robot, robot_names
 from fuzzyq_bullet.scenario import Drive, Limits, cellular_task
-from fuzzyq_bullet.scenario.checks import range_conflict
 from fuzzyq_bullet.sensors import SENSOR_MARGIN
 from fuzzyq_bullet.studies.episodes import USUAL, Environment, Job, Outfit
 from fuzzyq_bullet.studies.escape.comparison import BESIDE, compare, shown_comparison
@@ -22,6 +20,7 @@ from fuzzyq_bullet.studies.options import (
     RULES_HELP,
     counts_of,
     drives_of,
+    outfit_with,
     planner_of,
     rules_told,
     with_rules,
@@ -114,7 +113,7 @@ class Escape(Study):
 
     name: ClassVar[str] = "escape"
     title: ClassVar[str] = "Out of dead ends"
-    kinds: ClassVar[Mapping[str, type[Plan]]] = {"escape": EscapePlan}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {"escape": EscapePlan}
     width: ClassVar[int] = 100
     kept: ClassVar[bool] = True
 
@@ -153,22 +152,7 @@ class Escape(Study):
         Raises:
             UserError: If there is no such robot, or it cannot be so fast or see so far.
         """
-        outfit = Outfit(robot=self.robot, max_speed=self.max_speed, range=self.range)
-        if self.robot is not None and self.robot not in robot_names():
-            raise UserError(f"--robot: {no_robot(self.robot)}")
-        try:
-            task = outfit.on(cellular_task(0))
-        except ValidationError as error:
-            options = {"max_speed": "--max-speed", "range": "--range"}
-            raise UserError(
-                *(
-                    f"{options[str(one['loc'][-1])]}: {one['msg']}, got {one['input']:g}"
-                    for one in error.errors(include_url=False)
-                )
-            ) from error
-        if (wrong := range_conflict(task)) is not None:
-            raise UserError(f"--range: {wrong}")
-        return outfit
+        return outfit_with(self.robot, self.max_speed, self.range)
 
     def plan(self) -> EscapePlan:
         """Return what is run; asking for nothing is a mistake too."""

@@ -142,17 +142,30 @@ def full_speed(row: Row) -> float:
 def score_of(row: Row) -> float | None:
     """Return the score of the literature for a run in a cellular field.
 
-    It is success · OT / clip(time, 2·OT, 8·OT), so 0.5 at most. OT is 0.6 s for each metre of the
-    shortest path to the goal's centre: 2 m/s along a grid path, about a fifth longer.
-
     Returns:
         0 to 0.5; None for other environments, and where there is no way.
     """
-    if row.layout != "cellular" or row.shortest_path_m is None:
+    return literature_score(row, CELLULAR_GOAL) if row.layout == "cellular" else None
+
+
+def literature_score(row: Row, goal_radius: float) -> float | None:
+    """Return the score in which the literature on cellular fields (BARN) counts a run.
+
+    It is success · OT / clip(time, 2·OT, 8·OT), so 0.5 at most. OT is 0.6 s for each metre of the
+    shortest path to the goal's centre: 2 m/s along a grid path, about a fifth longer.
+
+    Args:
+        row: What the run came to.
+        goal_radius: Radius of the goal (m): the shortest path ends at its edge.
+
+    Returns:
+        0 to 0.5; None where there is no way.
+    """
+    if row.shortest_path_m is None:
         return None
     if not row.success or row.time_s is None:
         return 0.0
-    optimal = 0.6 * (row.shortest_path_m + CELLULAR_GOAL)
+    optimal = 0.6 * (row.shortest_path_m + goal_radius)
     return optimal / min(max(row.time_s, 2.0 * optimal), 8.0 * optimal)
 
 

@@ -92,7 +92,7 @@ class Familiar(Study):
 
     name: ClassVar[str] = "familiar"
     title: ClassVar[str] = "The same field again"
-    kinds: ClassVar[Mapping[str, type[Plan]]] = {"familiar": FamiliarPlan}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {"familiar": FamiliarPlan}
     width: ClassVar[int] = 110
 
     runs: int = Field(20, ge=1, le=100_000, description="Fields for every count.")

@@ -112,7 +112,10 @@ class Learning(Study):
 
     name: ClassVar[str] = "learning"
     title: ClassVar[str] = "What learning gains"
-    kinds: ClassVar[Mapping[str, type[Plan]]] = {"grid": SearchPlan, "comparison": ComparisonPlan}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {
+        "grid": SearchPlan,
+        "comparison": ComparisonPlan,
+    }
     folders: ClassVar[Mapping[str, str]] = {"grid": "grid", "comparison": "comparison"}
     pictured: ClassVar[bool] = True
 
@@ -178,7 +181,7 @@ class Learning(Study):
     @classmethod
     def recalled(cls, plans: Mapping[str, Any]) -> Learning | None:
         """Return the study whose plans these are; a policy of one's own is not among them."""
-        if len(plans) < len(cls.kinds):  # without the search nobody knows the best weights
+        if len(plans) < len(cls.stage_plans):  # without the search nobody knows the best weights
             return None
         plan: ComparisonPlan = plans["comparison"]
         return cls(

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
-from fuzzyq_bullet.studies.episodes import Row, from_csv
+from fuzzyq_bullet.studies.episodes import OF_MACHINE, Row, from_csv
 from fuzzyq_bullet.studies.registry import study_names, study_of
 from fuzzyq_bullet.studies.storage import MAX_BYTES, rows_in, settings_in
 from fuzzyq_bullet.studies.study import Study, Swept
@@ -128,7 +128,7 @@ def _read(folder: Path) -> tuple[str, str, Swept] | None:
     table = folder / f"{stage}.csv"
     finished = os.path.lexists(table)
     if finished:
-        rows = _table(table)
+        rows = _timed(_table(table), journal)
         if len(rows) != plan.total:
             raise UserError(
                 f"{table}: is damaged: {len(rows)} rows, and {plan.total} episodes by "
@@ -144,6 +144,14 @@ def _read(folder: Path) -> tuple[str, str, Swept] | None:
             )
     in_order = tuple(sorted(rows, key=lambda row: row.key))
     return name, stage, Swept(plan, in_order, told, folder=folder)
+
+
+def _timed(rows: list[Row], journal: Path) -> list[Row]:
+    """Return rows of a table with what the journal alone has, where there is one still."""
+    if not journal.exists():
+        return rows
+    noted = {row.key: row.model_dump(include=set(OF_MACHINE)) for row in rows_in(journal)}
+    return [row.model_copy(update=noted.get(row.key, {})) for row in rows]
 
 
 def _table(path: Path) -> list[Row]:

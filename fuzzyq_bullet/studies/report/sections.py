@@ -59,6 +59,7 @@ def of_study(found: Found, study: Study, findings: Findings | None, films: Films
     if findings is None:
         parts.append(tag("p", "No environment has been met by all planners yet."))
         return Section(name, study.heading(), join(*parts))
+    parts += [warning(f"could not be read: {one}") for one in findings.problems]
     parts += [table(one) for one in findings.tables]
     missed = [f"Target missed: {one}." for one in findings.missed]
     parts.append(bullets([*findings.remarks, *missed]))

@@ -130,7 +130,7 @@ class Robust(Study):
 
     name: ClassVar[str] = "robust"
     title: ClassVar[str] = "Noise, slip, latency and moving obstacles"
-    kinds: ClassVar[Mapping[str, type[Plan]]] = {"robust": RobustPlan}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {"robust": RobustPlan}
     pictured: ClassVar[bool] = True
 
     planners: str = Field("fuzzy-q-lambda", description="Planners, with commas between.")

@@ -86,7 +86,7 @@ class Steps(Study):
 
     name: ClassVar[str] = "steps"
     title: ClassVar[str] = "Steps to the goal (Table 5)"
-    kinds: ClassVar[Mapping[str, type[Plan]]] = {"grid": SearchPlan, "steps": FieldsPlan}
+    stage_plans: ClassVar[Mapping[str, type[Plan]]] = {"grid": SearchPlan, "steps": FieldsPlan}
     folders: ClassVar[Mapping[str, str]] = {"grid": "grid", "steps": "table"}
 
     runs: int = Field(RUNS, ge=1, le=100_000, description="Environments.")

@@ -1,0 +1,1 @@
+"""Planners of other papers, in the same loop, to compare with; one file each."""

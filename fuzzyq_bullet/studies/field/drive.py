@@ -1,0 +1,81 @@
+"""How an episode of ``bench field`` is driven in a worker: by its planner, with a watch on it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial, wraps
+from typing import Any
+
+import numpy as np
+
+from fuzzyq_bullet.episode import planner_of, run_with
+from fuzzyq_bullet.planning import Observation, Planner
+from fuzzyq_bullet.planning.process import ProcessSettings
+from fuzzyq_bullet.scenario import Scenario
+from fuzzyq_bullet.sensors import ExactSensor
+from fuzzyq_bullet.studies.episodes import Job
+from fuzzyq_bullet.studies.escape.bounds import drive_shortest_path
+from fuzzyq_bullet.studies.field.plan import BOUND
+from fuzzyq_bullet.studies.sweep import Done, answer, run_job
+from fuzzyq_bullet.trajectory import Trajectory
+
+
+class Timed:
+    """A planner with a watch on it: every ray that it asks for is cast while the watch runs.
+
+    Args:
+        planner: The planner.
+        seconds: Gets the time of each decision (s).
+        clock: The watch (s). That of the processor does not count what other processes take from
+            this one, nor the work of a planner that is a program of its own.
+    """
+
+    def __init__(
+        self,
+        planner: Planner,
+        seconds: list[float],
+        clock: Callable[[], float] = time.process_time,
+    ) -> None:
+        @wraps(planner.decide)  # a mistake of the planner's is told with the planner's own line
+        def decide(observation: Observation, /) -> Any:
+            began = clock()
+            decided = planner.decide(observation)
+            seconds.append(clock() - began)
+            return decided
+
+        self.decide = decide
+        close = getattr(planner, "close", None)
+        if callable(close):
+            self.close = close
+
+
+def drive_timed(scenario: Scenario, seconds: list[float]) -> Trajectory:
+    """Drive a realised scenario by its planner, and note the time of each decision (s)."""
+    apart = isinstance(scenario.planner, ProcessSettings)
+    clock = time.perf_counter if apart else time.process_time
+    return run_with(Timed(planner_of(scenario), seconds, clock), scenario)
+
+
+def drive_bound(scenario: Scenario) -> Trajectory:
+    """Drive the shortest path of a realised scenario, of which only what stands is left.
+
+    Nothing comes in its way, and it sees, knows its place and moves as it should.
+    """
+    robot = scenario.robot.model_copy(update={"slip": 0.0, "latency": 0.0})
+    sensor = ExactSensor(range=scenario.sensor_range)
+    alone = {"obstacles": scenario.standing, "robot": robot, "sensor": sensor}
+    return drive_shortest_path(scenario.model_copy(update=alone))
+
+
+def work(order: dict[str, Any]) -> dict[str, Any]:
+    """Do a job of the study in a worker process; records are left behind, planners fail often."""
+    job = Job.of_order(order)
+    if job.planner.split(".")[0] == BOUND:
+        return answer(Done(run_job(job, drive_bound).row))
+    seconds: list[float] = []
+    row = run_job(job, partial(drive_timed, seconds=seconds)).row
+    if seconds and row.error is None:
+        middle, most = np.percentile(np.array(seconds) * 1e3, [50, 95]).round(4).tolist()
+        row = row.model_copy(update={"decision_ms": middle, "decision_p95_ms": most})
+    return answer(Done(row))
