@@ -37,6 +37,8 @@ less far: where it sees farther, less of what it finds is new."""
 LOOK_SOON = 0.1
 """On an open path it scans again after this part of its range: the path is the shortest only as far
 as it has seen what stands there."""
+MOST_LOOKS = 10
+"""Once it has scanned so often from one place, it goes by frontiers: the map is wrong there."""
 AHEAD = 12
 """How many points of an open path are tried for a short cut."""
 BETTER = 0.2
@@ -141,6 +143,8 @@ class Escape:
         self._graph.scan(observation)
         self._scanned_at = observation.position
         self._on_open_path = False
+        if self._graph.looks_from(observation.position) > MOST_LOOKS:
+            self._distrusts_map = True
         if observation.sees_far and not self._distrusts_map:
             path = self._graph.open_path(observation)
             if path is not None:

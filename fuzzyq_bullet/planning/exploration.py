@@ -216,6 +216,11 @@ class ExplorationGraph:
             return None
         return open_path(self._obstacles, observation.position, observation.goal)
 
+    def looks_from(self, here: Point) -> int:
+        """Return how many scans were made from the place where a position (m) is."""
+        near = NEAR * self.size
+        return sum(math.dist(node.point, here) <= near for node in self._scanned)
+
     def blacklist(self, tried: Frontier) -> None:
         """Forget a frontier for good, and all others at the same place."""
         self._blacklist.append(tried.point)
