@@ -20,6 +20,8 @@ Floats: TypeAlias = NDArray[np.float64]
 
 STEP_UNIT = 0.2
 """S_p of the default robot, the standard single step (m): the unit of the fuzzy controller."""
+USUAL_RANGE = 5.0
+"""How far the paper's detection lines reach, in S_p."""
 LONGEST_STRIDE = 2.0
 """Upper end of N_s: the longest step is this many S_p."""
 
@@ -219,6 +221,11 @@ class Observation:
     def slowness(self) -> float:
         """How many times as long as usual the robot is to be waited for, at least 1."""
         return 1.0 if self.motion is None else self.motion.slowness
+
+    @property
+    def sees_far(self) -> bool:
+        """Whether the robot sees farther than the paper's lines reach, 5·S_p."""
+        return self.range > USUAL_RANGE * self.unit * (1.0 + 1e-9)
 
     @property
     def size(self) -> float:

@@ -82,6 +82,25 @@ class ObstacleMap:
             costs = [a if math.isfinite(a) else b for a, b in zip(costs, narrow, strict=True)]
         return costs
 
+    def free_cells(self, points: Sequence[Point], narrower: float) -> OccupancyGrid | None:
+        """Return a grid that holds these points (m): free is what no point that was hit closes.
+
+        Its cells lie where they lay before, however much of it is known by now: what was seen once
+        to be closed stays closed.
+
+        Args:
+            points: What lies in it at least.
+            narrower: By how many cells less than the disc must be free.
+
+        Returns:
+            None where the cells are as wide as the disc, and could tell nothing.
+        """
+        grid = _free_grid(_least(self._low, *points), _greatest(self._high, *points), fixed=True)
+        if self._radius <= grid.cell:
+            return None
+        grid.cover(self._hits * GRAIN, self._radius - narrower * grid.cell)
+        return grid
+
     def _lengths(self, goal: Point, starts: Sequence[Point], hits: Floats) -> list[float]:
         points = (*starts, goal)
         grid = self._grid(_least(self._low, *points), _greatest(self._high, *points), hits)
@@ -92,19 +111,32 @@ class ObstacleMap:
 
     def _grid(self, low: Point, high: Point, hits: Floats) -> OccupancyGrid:
         """Return a grid over a rectangle (m) and ``MARGIN`` around it, what was seen in it."""
-        low, high = (low[0] - MARGIN, low[1] - MARGIN), (high[0] + MARGIN, high[1] + MARGIN)
-        width, depth = high[0] - low[0], high[1] - low[1]
-        cell = CELL
-        while (width / cell + 1.0) * (depth / cell + 1.0) > MOST:
-            cell *= 2.0
-        grid = OccupancyGrid.over(low, high, cell)
+        grid = _free_grid(low, high)
         x1, y1, x2, y2 = self._ends
         grid.free[grid.cells(x1 + (x2 - x1) * _ALONG, y1 + (y2 - y1) * _ALONG)] = False
         # Half a cell less than the disc: a gap that is wide enough hardly ever closes only because
         # of where the cells lie. Cells as wide as the disc could tell nothing.
-        if self._radius > cell:
-            grid.cover(hits * GRAIN, self._radius - cell / 2.0)
+        if self._radius > grid.cell:
+            grid.cover(hits * GRAIN, self._radius - grid.cell / 2.0)
         return grid
+
+
+def _free_grid(low: Point, high: Point, *, fixed: bool = False) -> OccupancyGrid:
+    """Return a free grid over a rectangle (m) and ``MARGIN`` around it.
+
+    Args:
+        low: Its lower left corner.
+        high: Its upper right corner.
+        fixed: Whether cells of all grids lie alike, and the origin in a corner of one.
+    """
+    low, high = (low[0] - MARGIN, low[1] - MARGIN), (high[0] + MARGIN, high[1] + MARGIN)
+    width, depth = high[0] - low[0], high[1] - low[1]
+    cell = CELL
+    while (width / cell + 1.0) * (depth / cell + 1.0) > MOST:
+        cell *= 2.0
+    if fixed:
+        low = math.floor(low[0] / cell) * cell, math.floor(low[1] / cell) * cell
+    return OccupancyGrid.over(low, high, cell)
 
 
 def _least(*points: Sequence[float]) -> Point:

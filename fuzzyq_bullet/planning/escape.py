@@ -14,11 +14,11 @@ from __future__ import annotations
 import math
 
 from fuzzyq_bullet.planning.aim import Aim, along_heading, towards_goal
-from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.base import USUAL_RANGE, Observation
 from fuzzyq_bullet.planning.decision import Mode
 from fuzzyq_bullet.planning.exploration import NEAR, ExplorationGraph, Judge
 from fuzzyq_bullet.planning.frontiers import Frontier
-from fuzzyq_bullet.planning.path_follower import NEARER, PathFollower
+from fuzzyq_bullet.planning.path_follower import NEARER, PathFollower, Segment
 from fuzzyq_bullet.planning.ray_search import eased, ray_search
 from fuzzyq_bullet.planning.scan import Point
 
@@ -34,6 +34,13 @@ BESIDE = math.radians(45.0)
 LOOK_AGAIN = 0.3
 """On its way to a frontier the robot scans again after this part of its range, or of 1 m if it sees
 less far: where it sees farther, less of what it finds is new."""
+LOOK_SOON = 0.1
+"""On an open path it scans again after this part of its range: the path is the shortest only as far
+as it has seen what stands there."""
+MOST_LOOKS = 10
+"""Once it has scanned so often from one place, it goes by frontiers: the map is wrong there."""
+AHEAD = 12
+"""How many points of an open path are tried for a short cut."""
 BETTER = 0.2
 """It goes for another frontier only if the way over it is shorter by so much (m)."""
 ARRIVED = 0.1
@@ -57,6 +64,8 @@ class Escape:
         self._graph = graph or ExplorationGraph()
         self._knows_the_way = self._graph.leads_to_goal
         self._frontier: Frontier | None = None
+        self._on_open_path = False
+        self._distrusts_map = False  # an open path could not be followed
         self._follower = PathFollower([])
         self._mode: Mode = "breakout"
         self._failed: list[Point] = []  # frontiers that were not reached at first
@@ -84,7 +93,9 @@ class Escape:
         goal = towards_goal(observation)
         here, to_goal = observation.position, goal.distance
         [middle] = observation.sense([goal.bearing])
-        enough = min(breakout_at * observation.unit, observation.range, to_goal)
+        # Who sees farther than the paper's lines breaks out as much sooner.
+        sight = observation.range / USUAL_RANGE if observation.sees_far else observation.unit
+        enough = min(breakout_at * sight, observation.range, to_goal)
         if to_goal < self._nearest - NEARER * observation.size:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._graph.pass_by(here)
@@ -120,7 +131,7 @@ class Escape:
         """Take up another goal: what was seen stays, what was chosen and tried for the last not."""
         if self._goal is not None:
             self._frontier, self._follower = None, PathFollower([])
-            self._failed, self._left = [], []
+            self._failed, self._left, self._distrusts_map = [], [], False
             self._nearest, self._since = math.inf, observation.time
             self._straight, self._mark = False, math.nan
             self._graph.pass_by(observation.position)
@@ -128,9 +139,20 @@ class Escape:
         self._goal = observation.goal
 
     def _scan(self, observation: Observation) -> None:
-        """Scan all around, and choose the frontier to go to."""
+        """Scan all around, and choose the open path or the frontier to go to."""
         self._graph.scan(observation)
         self._scanned_at = observation.position
+        self._on_open_path = False
+        if self._graph.looks_from(observation.position) > MOST_LOOKS:
+            self._distrusts_map = True
+        if observation.sees_far and not self._distrusts_map:
+            path = self._graph.open_path(observation)
+            if path is not None:
+                # The goal is the frontier: all between is taken for free.
+                self._frontier = Frontier(0, observation.goal, 0.0, 0.0, None)
+                self._follower = PathFollower(path, AHEAD)
+                self._on_open_path = True
+                return
         self._frontier, path = self._graph.best_frontier(observation) or (None, [])
         self._follower = PathFollower(path)
 
@@ -156,8 +178,12 @@ class Escape:
         """
         tried = self._frontier
         moved = math.dist(observation.position, self._scanned_at)
+        if self._on_open_path:
+            if moved > LOOK_SOON * observation.range:
+                self._scan(observation)
+                self._mode = "following"
         # A frontier that was given up once is not given up again: so this ends.
-        if (
+        elif (
             tried is not None
             and moved > LOOK_AGAIN * max(1.0, observation.range)
             and not self._is_at(tried.point, self._left)
@@ -168,21 +194,30 @@ class Escape:
             if math.dist(observation.position, tried.point) > ARRIVED * observation.size:
                 segment = self._follower.next(observation)
                 if segment is not None:
-                    way = along_heading(
-                        observation, segment.heading, segment.length, self._mode, tried.point
-                    )
-                    exact = segment.exact or self._is_at(tried.point, self._failed)
-                    return way._replace(exact=exact, reach=segment.reach)
+                    return self._along(segment, observation, tried)
                 self._fail(tried)
             self._scan(observation)
             self._mode = "following"
         return towards_goal(observation)._replace(mode=self._mode, reach=0.0, hopeless=True)
 
+    def _along(self, segment: Segment, observation: Observation, tried: Frontier) -> Aim:
+        """Aim along the next segment of the way to a frontier, or of an open path."""
+        way = along_heading(
+            observation, segment.heading, segment.length, self._mode, tried.point
+        )._replace(reach=segment.reach)
+        if self._on_open_path:  # no more of it is known to be free
+            return way._replace(exact=segment.exact, target=way.point)
+        return way._replace(exact=segment.exact or self._is_at(tried.point, self._failed))
+
     def _fail(self, tried: Frontier) -> None:
         """Try a frontier that was not reached a second time, then put it on the blacklist.
 
-        The robot may have come a little off the path that it saw; it goes back and aims again.
+        The robot may have come a little off the path that it saw; it goes back and aims again. From
+        an open path that it cannot follow it goes over to frontiers, for good.
         """
+        if self._on_open_path:
+            self._distrusts_map = True
+            return
         if self._is_at(tried.point, self._failed):
             self._graph.blacklist(tried)
         self._failed.append(tried.point)

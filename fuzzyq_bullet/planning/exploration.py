@@ -21,6 +21,7 @@ from fuzzyq_bullet.planning.frontiers import (
     find_concave_corners,
     find_frontiers,
 )
+from fuzzyq_bullet.planning.open_path import open_path
 from fuzzyq_bullet.planning.scan import Point, Scan, scan_360
 
 ToGo: TypeAlias = Callable[[float, float], float]
@@ -204,6 +205,21 @@ class ExplorationGraph:
             path.append(self._nodes[at].point)
             at = before[at]
         return chosen, path[::-1]
+
+    def open_path(self, observation: Observation) -> list[Point] | None:
+        """Return the shortest path (m) to the goal that what was seen leaves open.
+
+        Returns:
+            None where it leaves none, or somebody else judges ways out.
+        """
+        if self.judge is not as_it_looks:
+            return None
+        return open_path(self._obstacles, observation.position, observation.goal)
+
+    def looks_from(self, here: Point) -> int:
+        """Return how many scans were made from the place where a position (m) is."""
+        near = NEAR * self.size
+        return sum(math.dist(node.point, here) <= near for node in self._scanned)
 
     def blacklist(self, tried: Frontier) -> None:
         """Forget a frontier for good, and all others at the same place."""

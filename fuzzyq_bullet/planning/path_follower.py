@@ -10,7 +10,7 @@ from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
 from fuzzyq_bullet.planning.scan import Point
 
 AHEAD = 3
-"""How many points of the path are tried for a short cut."""
+"""How many points of a path are usually tried for a short cut."""
 REACHED = 0.03
 """A point as near as this is reached (m)."""
 NEARER = 0.05 * STEP_UNIT
@@ -63,10 +63,12 @@ class PathFollower:
 
     Args:
         points: Points to pass (m); each line from one to the next was driven or seen to be free.
+        ahead: How many of them are tried for a short cut.
     """
 
-    def __init__(self, points: list[Point]) -> None:
+    def __init__(self, points: list[Point], ahead: int = AHEAD) -> None:
         self._points = points
+        self._ahead = ahead
         self._closest = math.inf
         self._since = math.inf
 
@@ -78,7 +80,7 @@ class PathFollower:
         here, points, size = observation.position, self._points, observation.size
         while len(points) > 1 and math.dist(here, points[0]) <= REACHED * size:
             self._drop(1)
-        ahead = points[:AHEAD]
+        ahead = points[: self._ahead]
         lengths = [math.dist(here, point) for point in ahead]
         headings = [math.atan2(y - here[1], x - here[0]) for x, y in ahead]
         # Cast with the same batch what is asked for next: slight turns, and the robot's heading.

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.planning.base import MOST_HEADINGS, Floats, Observation
+from fuzzyq_bullet.planning.base import MOST_HEADINGS, USUAL_RANGE, Floats, Observation
 
 Point: TypeAlias = tuple[float, float]
 _T = TypeVar("_T", bound=np.generic)
@@ -23,8 +23,6 @@ HEADINGS = 120
 MANY_RAYS = 720
 """Thin rays where the robot sees farther than 5·S_p: 0.5° apart, like those of a usual lidar. With
 fewer of them what lies between two of them looks like a gap from afar."""
-USUAL_RANGE = 5.0
-"""Range that the fewer rays and headings are enough for, in S_p."""
 FINER = (1.0 / 3.0, 1.0 / 9.0)
 """Where the free distance is longest or changes much, headings are added closer together, in two
 turns: by these parts of the first spacing."""
@@ -96,7 +94,7 @@ def scan_360(observation: Observation) -> Scan:
     distance counts instead of the half width.
     """
     farther = observation.range / (USUAL_RANGE * observation.unit)
-    far = farther > 1.0 + 1e-9
+    far = observation.sees_far
     first_headings, first_turns = _around(_headings(farther) if far else HEADINGS)
     ray_headings, turns = _around(MANY_RAYS if far else RAYS)
     distance = observation.look(ray_headings.tolist())
