@@ -75,6 +75,7 @@ def run_of(
         "min_clearance_m": clearance,
         "modes": modes,
         "digest": f"{seed:032x}",
+        "no_shortest_path": None,
     }
     result = None if status in ("broken", "invalid") else Result.model_validate(figures)
     return Verdict(
