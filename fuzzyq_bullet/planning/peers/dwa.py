@@ -57,9 +57,9 @@ class DwaSettings(PeerSettings):
     """The dynamic window approach of Fox, Burgard and Thrun (1997)."""
 
     name: Literal["dwa"] = "dwa"
-    heading: _Weight = Field(default=2.0, description="α: weight of facing the goal.")
-    clearance: _Weight = Field(default=0.2, description="β: weight of the free length of the arc.")
-    velocity: _Weight = Field(default=0.2, description="γ: weight of the speed.")
+    heading: _Weight = Field(default=1.0, description="α: weight of facing the goal.")
+    clearance: _Weight = Field(default=0.5, description="β: weight of the free length of the arc.")
+    velocity: _Weight = Field(default=0.5, description="γ: weight of the speed.")
     interval: Annotated[Number, Field(gt=0.0, le=2.0)] = Field(
         default=0.25,
         description="Within it the wheels must come to a speed and turn rate (s); at least one "

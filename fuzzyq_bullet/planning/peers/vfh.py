@@ -200,7 +200,8 @@ class VfhPlanner:
         right = off[(off <= 0.0) & (np.hypot(x, y + tightest) < tightest + wide)]
         sectors = np.angle(np.exp(1j * (np.arange(SECTORS) * ALPHA - facing)))
         beyond: Bools = sectors > left.min(initial=math.pi)
-        return beyond | (sectors < right.max(initial=-math.pi))
+        beyond |= sectors < right.max(initial=-math.pi)
+        return beyond
 
     def _cost(self, one: float, goal: float, seen: Observation, before: float) -> float:
         settings = self._settings
