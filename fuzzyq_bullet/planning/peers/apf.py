@@ -20,6 +20,9 @@
 heading, its size up to 1 the part of the greatest speed. Left out: Khatib's damping and inertia,
 which the velocity controller of the wheels has. Known to remain: passages between obstacles that
 repel each other's side, and oscillation in narrow corridors (Koren and Borenstein 1991).
+
+Tuning (docs/explanation/peers.md): five pairs of η and ρ0 in three training fields; of the three
+that solved all, this one was the fastest.
 """
 
 from __future__ import annotations

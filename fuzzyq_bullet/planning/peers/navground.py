@@ -16,6 +16,9 @@ answers with the twist that the behaviour asks of two wheels. They are made for 
 still has no say in ORCA and HRVO, which both give way as if they had the whole fault, and none of
 them has a memory, so that dead ends hold them. The package knows no acceleration of the wheels; the
 safety filter makes up for that.
+
+Tuning (docs/explanation/peers.md): margins of 0, 0.02 and 0.05 m in two training fields; ORCA's
+horizon and its treatment of obstacles in `sparse` and before one cylinder. It is far from a search.
 """
 
 from __future__ import annotations
@@ -57,7 +60,7 @@ class NavgroundSettings(PeerSettings):
     name: Literal["navground"] = "navground"
     behavior: Behavior = Field(default="HL", description="Which of its behaviours decides.")
     safety_margin: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
-        default=0.05, description="Distance that the behaviour keeps besides the radius (m)."
+        default=0.0, description="Distance that the behaviour keeps besides the radius (m)."
     )
     properties: dict[str, Value] = Field(
         default={},

@@ -50,7 +50,8 @@ class Surroundings:
     def points(self) -> Floats:
         """Where the rays met something, seen from the robot, world axes (m), shape (H, 2)."""
         headings, distances = self.headings[self.met], self.distances[self.met]
-        return distances[:, None] * np.column_stack([np.cos(headings), np.sin(headings)])
+        points: Floats = distances[:, None] * np.column_stack([np.cos(headings), np.sin(headings)])
+        return points
 
     @property
     def clearances(self) -> Floats:
@@ -61,7 +62,8 @@ class Surroundings:
 def look_around(observation: Observation) -> Surroundings:
     """Cast single rays in all directions: 120, or 720 where the robot sees farther than usual."""
     far = observation.range > USUAL_RANGE * observation.unit + 1e-9
-    headings = np.arange(MANY_RAYS if far else RAYS) * (math.tau / (MANY_RAYS if far else RAYS))
+    count = MANY_RAYS if far else RAYS
+    headings = np.arange(count, dtype=np.float64) * (math.tau / count)
     distances = observation.look(headings.tolist())
     met = distances < observation.range + observation.radius - 1e-9
     return Surroundings(headings, distances, met, observation.radius, observation.uncertainty)

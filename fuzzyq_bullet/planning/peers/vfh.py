@@ -22,6 +22,9 @@ spot, so nothing is masked at rest, and if everything is masked it stops and tur
 is blocked it creeps to the least dense. Cells behind the goal do not count, because a wall behind
 it would close the way into it. The paper's grid is filled by sonar over a longer time; here 120
 rays fill it at once.
+
+Tuning (docs/explanation/peers.md): the cost is the paper's; thresholds and speed are the first
+values that were tried, and solved 5 of 8 training fields within 90 s. They were not searched.
 """
 
 from __future__ import annotations
@@ -200,7 +203,8 @@ class VfhPlanner:
         right = off[(off <= 0.0) & (np.hypot(x, y + tightest) < tightest + wide)]
         sectors = np.angle(np.exp(1j * (np.arange(SECTORS) * ALPHA - facing)))
         beyond: Bools = sectors > left.min(initial=math.pi)
-        return beyond | (sectors < right.max(initial=-math.pi))
+        beyond |= sectors < right.max(initial=-math.pi)
+        return beyond
 
     def _cost(self, one: float, goal: float, seen: Observation, before: float) -> float:
         settings = self._settings

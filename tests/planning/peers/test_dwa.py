@@ -86,10 +86,21 @@ def test_where_no_arc_is_admissible_it_turns_on_the_spot_away_from_what_is_near(
     assert twist.turn_rate == -MOTION.max_turn_rate  # the obstacle is a little to the left
 
 
-def test_it_slows_down_before_one_obstacle_and_passes_it():
+def test_it_passes_one_obstacle():
     record = drive("dwa", [CYLINDER])
     assert record.outcome == "goal"
-    x, speed = record.ticks.position[:, 0], record.ticks.speed
-    assert speed[(x > 3.5) & (x < 4.7)].min() < 0.55
-    assert speed[(x > 2.0) & (x < 3.0)].min() > 0.59
     assert record.ticks.time[-1] < 20.0
+
+
+def test_it_slows_down_before_the_end_of_a_corridor_without_the_safety_filter():
+    corridor = [
+        {"shape": "box", "position": [2.5, 5.6], "size": [4.6, 0.4]},
+        {"shape": "box", "position": [2.5, 4.4], "size": [4.6, 0.4]},
+        {"shape": "box", "position": [4.6, 5.0], "size": [0.2, 0.6]},
+    ]
+    record = drive({"name": "dwa", "guard": False}, corridor, limits={"time": 12.0})
+    assert record.outcome in ("timeout", "stuck")
+    x, speed = record.ticks.position[:, 0], record.ticks.speed
+    assert speed[(x > 2.0) & (x < 3.0)].max() > 0.55
+    assert speed[np.argmax(x)] < 0.1
+    assert 3.8 < x.max() < 4.3  # half a metre before the end or nearer, and not in it
