@@ -68,7 +68,7 @@ format: $(READY)
 
 # MkDocs 1.6 tells of its successors at length with each build, unless it is asked not to.
 docs: $(READY)
-	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --site-dir "$(abspath $(OUT))/docs"
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir "$(abspath $(OUT))/docs"
 	@echo "$(OUT)/docs/index.html"
 
 gallery: $(READY)
