@@ -50,6 +50,16 @@ def _around(count: int) -> tuple[Floats, NDArray[np.complex128]]:
     return headings, turns
 
 
+def ray_headings(observation: Observation) -> tuple[list[float], NDArray[np.complex128]]:
+    """Return the world headings (rad) of the thin rays of a scan, and the same as complex numbers.
+
+    Whoever looks along these shares the rays with a scan at the same instant.
+    """
+    far = observation.range / (USUAL_RANGE * observation.unit) > 1.0 + 1e-9
+    headings, turns = _around(MANY_RAYS if far else RAYS)
+    return headings.tolist(), turns
+
+
 def _headings(farther: float) -> int:
     """Return how many headings are as close at their far ends as usual, the range so many times."""
     return min(math.ceil(HEADINGS * farther), MOST_HEADINGS)
@@ -98,8 +108,8 @@ def scan_360(observation: Observation) -> Scan:
     farther = observation.range / (USUAL_RANGE * observation.unit)
     far = farther > 1.0 + 1e-9
     first_headings, first_turns = _around(_headings(farther) if far else HEADINGS)
-    ray_headings, turns = _around(MANY_RAYS if far else RAYS)
-    distance = observation.look(ray_headings.tolist())
+    rays, turns = ray_headings(observation)
+    distance = observation.look(rays)
     met = distance < observation.range + observation.radius
     hits, distance = turns[met] * distance[met], distance[met]
     wide_squared = min(observation.radius, distance.min(initial=np.inf) - 1e-3) ** 2

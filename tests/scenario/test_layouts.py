@@ -362,7 +362,10 @@ HEAD = "name: x\nstart: {position: [1, 5]}\ngoal: {position: [9, 5]}\n"
         ("{layout: maze, corridor: 0.3}", "x:4: random.corridor: must be at least 0.5, got 0.3"),
         ("{layout: long-wall, position: [1]}", "x:4: random.position: needs 2 values"),
         ("{count: 3, coutn: 4}", "x:4: random.coutn: unknown key; did you mean 'count'?"),
-        ("{count: 3, angle: 4}", "x:4: random.angle: unknown key; allowed: layout, movers, count, radius"),
+        (
+            "{count: 3, angle: 4}",
+            "x:4: random.angle: unknown key; allowed: layout, movers, count, radius",
+        ),
         ("{layout: scatter}", "x:4: random.count: is required"),
         ("{count: 3, scatter: 4}", "x:4: random.scatter: unknown key"),
         ("semicircle", "x:4: random: expected a mapping"),
