@@ -30,8 +30,8 @@ SLOW = 0.5
 """The lower speed that is tried, as a part of the greatest."""
 KEPT = 0.3
 """Another way than that of the last decision must be worth so much more (m)."""
-ROOMY = 2.0
-ENOUGH = 0.25
+ROOMY = 4.0
+ENOUGH = 0.3
 TURNING = 0.15
 AFTER = 0.5
 LEAST = 0.1

@@ -22,7 +22,7 @@ from fuzzyq_bullet.planning.scan import ray_headings
 
 Flags: TypeAlias = NDArray[np.bool_]
 
-LAGS = (0.15, 0.3, 0.6)
+LAGS = (0.05, 0.1, 0.15, 0.3, 0.6)
 """How old the readings are that a new one is compared with (s)."""
 SURE_AFTER = 0.3
 """A surface that was there so long ago (s) stands."""
@@ -44,7 +44,7 @@ MATCH = 0.35
 """A circle no farther than this (m) from where a track is expected is the same thing."""
 COAST = 0.5
 """A track that is not seen any more is expected to go on for so long (s)."""
-FASTER = 0.1
+FASTER = 0.05
 """What moves may become faster than it was seen to be by this (m/s)."""
 GROWN = 0.04
 """A circle that has grown or shrunk by more than this (m) since the last reading is another."""
@@ -191,11 +191,12 @@ class Tracker:
         """Take one more reading, and return what it tells."""
         now = _read(observation)
         tolerance = SAME + 2.0 * observation.uncertainty
-        moves, stands = self._told(now, tolerance)
+        moves, age = self._told(now, tolerance)
         self._readings.append(now)
         while now.time - self._readings[1 if len(self._readings) > 1 else 0].time > LAGS[-1]:
             self._readings.popleft()
 
+        fastest, speeds = observation.closing_speed, np.zeros(len(now.met))
         ids = _things(now, tolerance)
         groups: list[NDArray[np.intp]] = []
         doubtful = np.zeros_like(moves)
@@ -206,11 +207,12 @@ class Tracker:
                 apart = np.linalg.norm(now.points[members][:, None] - core[None], axis=2)
                 group = members[(apart.min(axis=1) <= WHOLE)]
                 groups.append(group)
-            elif not stands[members].any():
+            elif (oldest := float(age[members].max())) < SURE_AFTER:
                 doubtful[members] = True
-        fastest = observation.closing_speed
+                # It would be elsewhere by now if it were faster.
+                speeds[members] = min(fastest, tolerance / oldest) if oldest else fastest
         followed = self._follow(now, groups, tolerance, TOO_FAST * fastest)
-        speeds, velocities = np.where(doubtful, fastest, 0.0), np.zeros_like(now.points)
+        velocities = np.zeros_like(now.points)
         until, moving = np.zeros(len(now.met)), np.zeros_like(doubtful)
         for group in groups:
             moving[group] = True
@@ -231,18 +233,18 @@ class Tracker:
             stands,
         )
 
-    def _told(self, now: _Reading, tolerance: float) -> tuple[Flags, Flags]:
-        """Return which rays meet something where nothing was, and which what was there before."""
-        moves, stands = np.zeros_like(now.met), np.zeros_like(now.met)
+    def _told(self, now: _Reading, tolerance: float) -> tuple[Flags, Floats]:
+        """Return which rays meet something where nothing was, and for how long (s) it was there."""
+        moves, age = np.zeros_like(now.met), np.zeros(len(now.met))
         points = now.points[now.met]
         for lag in LAGS:
             before = self._before(now.time - lag)
             if before is None or not len(points):
                 continue
             moves[now.met] |= _was_free(before, points, tolerance)
-            if now.time - before.time >= SURE_AFTER - 1e-6:
-                stands[now.met] |= _was_surface(before, points, tolerance)
-        return moves, stands & ~moves
+            was = _was_surface(before, points, tolerance)
+            age[now.met] = np.where(was, now.time - before.time, age[now.met])
+        return moves, np.where(moves, 0.0, age)
 
     def _before(self, time: float) -> _Reading | None:
         """Return the latest reading that is at least as old; None if there is none."""
@@ -322,18 +324,19 @@ def _was_free(before: _Reading, points: Floats, tolerance: float) -> Flags:
 
 
 def _was_surface(before: _Reading, points: Floats, tolerance: float) -> Flags:
-    """Return which points (m) lie on what an earlier reading has met."""
-    ends = np.roll(before.points, -1, axis=0)
-    joined = _joined(before)
-    start = before.points[before.met]
-    along = np.where(joined[:, None], ends - before.points, 0.0)[before.met]
-    if not len(start):
-        return np.zeros(len(points), dtype=bool)
-    rel = points[:, None] - start[None]
-    length = np.maximum((along**2).sum(axis=1), 1e-12)
+    """Return which points (m) lie on what an earlier reading has met, near their bearing."""
+    count = len(before.lengths)
+    dx, dy = (points - before.origin).T
+    at = np.floor(np.mod(np.arctan2(dy, dx), math.tau) / (math.tau / count)).astype(int)
+    rays = (at[:, None] + np.arange(-BESIDE, BESIDE + 1)) % count
+    along = np.where(
+        _joined(before)[:, None], np.roll(before.points, -1, axis=0) - before.points, 0.0
+    )[rays]
+    rel = points[:, None] - before.points[rays]
+    length = np.maximum((along**2).sum(axis=2), 1e-12)
     part = np.clip((rel * along).sum(axis=2) / length, 0.0, 1.0)
-    off = rel - part[..., None] * along
-    return np.asarray((off**2).sum(axis=2).min(axis=1) <= tolerance**2)
+    off = ((rel - part[..., None] * along) ** 2).sum(axis=2)
+    return np.asarray(np.where(before.met[rays], off, np.inf).min(axis=1) <= tolerance**2)
 
 
 def _joined(reading: _Reading) -> Flags:
