@@ -54,6 +54,7 @@ class ImprovedFuzzyBase:
         if moving:
             self._traffic.update(observation)
         if self._escape is not None:
+            self._escape.moving = self._traffic.moving
             aim = self._escape.aim(self._traffic.patient(observation), self._breakout_at)
         if moving:
             aim = self._traffic.aim(observation, aim or towards_goal(observation))

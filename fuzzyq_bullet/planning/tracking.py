@@ -50,6 +50,8 @@ GROWN = 0.04
 """A circle that has grown or shrunk by more than this (m) since the last reading is another."""
 TOO_FAST = 1.2
 """What seems to be faster than this many times the closing speed was seen wrongly."""
+UNEXPLAINED = 0.15
+"""Points on the edge of two that pass each other may be off both: no more than this part."""
 LEAST = 3
 """Places of its centre that a velocity is told from, at least."""
 BEND = 0.015
@@ -261,7 +263,15 @@ class Tracker:
         """Take note of what moves, and return it for each of the groups of rays that meet it."""
         left, found = list(self._followed), []
         for group in groups:
-            centre, radius = circle_of(now.points[group], now.origin, tolerance)
+            points = now.points[group]
+            centre, radius, fits = circle_of(points, now.origin, tolerance)
+            behind = [] if fits else _explaining(points, left, now.time, tolerance)
+            if behind:  # two that pass each other, and are seen as one: both go on
+                for one in behind:
+                    one.seen.append((now.time, *one.expected(now.time)))
+                    left.remove(one)
+                found.append(max(behind, key=lambda one: one.fastest(math.inf)))
+                continue
             near = [(math.dist(one.expected(now.time), centre), k) for k, one in enumerate(left)]
             apart, k = min(near, default=(math.inf, -1))
             if apart <= MATCH:
@@ -275,13 +285,32 @@ class Tracker:
         return found
 
 
+def _explaining(
+    points: Floats, known: Sequence[_Followed], time: float, tolerance: float
+) -> list[_Followed]:
+    """Return the known ones on whose circles, where they are expected, the points (m) lie.
+
+    None if that leaves points over.
+    """
+    found, left = [], np.ones(len(points), dtype=bool)
+    for one in known:
+        if one.velocity is None:
+            continue
+        off = np.abs(np.hypot(*(points - one.expected(time)).T) - one.radius)
+        on = off <= tolerance + BEND
+        if on.sum() >= 2:
+            found.append(one)
+            left &= ~on
+    return found if left.mean() <= UNEXPLAINED else []
+
+
 def circle_of(
     points: Floats, origin: Floats, tolerance: float
-) -> tuple[tuple[float, float], float]:
+) -> tuple[tuple[float, float], float, bool]:
     """Return centre (m) and radius (m) of the circle that fits points, shape (K, 2), best.
 
-    Where none fits, as on something straight, it is the circle around them (Kåsa's fit, which
-    needs no first guess, is exact for points without noise).
+    Where none fits, as on something straight, it is the circle around them, and the third is False
+    (Kåsa's fit, which needs no first guess, is exact for points without noise).
 
     Args:
         points: What is seen of something (m).
@@ -300,8 +329,8 @@ def circle_of(
         off = np.abs(np.linalg.norm(points - centre, axis=1) - radius).max()
         behind = np.linalg.norm(centre - origin) > np.linalg.norm(points - origin, axis=1).min()
         if off <= tolerance and radius <= LARGEST and behind:
-            return (float(centre[0]), float(centre[1])), radius
-    return (float(middle[0]), float(middle[1])), around
+            return (float(centre[0]), float(centre[1])), radius, True
+    return (float(middle[0]), float(middle[1])), around, False
 
 
 def _read(observation: Observation) -> _Reading:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fuzzyq_bullet.planning.aim import Aim
-from fuzzyq_bullet.planning.base import Observation
+from fuzzyq_bullet.planning.base import Floats, Observation
 from fuzzyq_bullet.planning.closing import give_room
+from fuzzyq_bullet.planning.cost_to_go import NO_HITS
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.give_way import GiveWay
 from fuzzyq_bullet.planning.tracking import Tracker, Traffic
@@ -28,6 +29,11 @@ class TrafficSense:
         if self._held:
             self._waited += observation.time - self._before
         self._before = observation.time
+
+    @property
+    def moving(self) -> Floats:
+        """Points (m) of what moves, shape (M, 2)."""
+        return NO_HITS if self._traffic is None else self._traffic.moving
 
     def patient(self, observation: Observation) -> Observation:
         """Return what is observed by a clock that stands while the robot waits or gives way.
