@@ -29,7 +29,7 @@ STOOD = 0.3
 """How long the robot must have stood before anything touches it (s)."""
 RESERVE = 0.02
 """Gap that is left (m)."""
-AHEAD = math.cos(math.radians(30.0))
+AHEAD = math.cos(math.radians(15.0))
 """What is no farther aside of the robot's way than this angle is ahead: it may turn and come."""
 SPEEDS = 6
 """Speeds that are tried, from as fast as the robot can be to as slow."""

@@ -21,20 +21,27 @@ from fuzzyq_bullet.planning.tracking import Traffic
 HORIZON = 2.5
 """How far ahead it looks (s)."""
 DT = 0.1
+"""Time between two places that are looked at (s)."""
 MARGIN = 0.05
 """Gap (m) that it keeps to what moves now ..."""
 GROWS = 0.05
 """... and how much more with every second ahead (m/s): the velocity is not known exactly."""
 HEADINGS = 24
+"""Headings that are tried, all around."""
 SLOW = 0.5
 """The lower speed that is tried, as a part of the greatest."""
 KEPT = 0.3
 """Another way than that of the last decision must be worth so much more (m)."""
 ROOMY = 4.0
+"""What a metre of gap is worth, in metres nearer to the aim ..."""
 ENOUGH = 0.3
+"""... up to so much gap (m)."""
 TURNING = 0.15
+"""What a turn of 1 rad costs (m)."""
 AFTER = 0.5
+"""What has met something that stands is expected within this part of its speed times the time."""
 LEAST = 0.1
+"""A way that is not safe at this speed (m/s), or at that which the robot has, is none."""
 SHORT = 0.05
 """How much of what is free is not used (m)."""
 
@@ -94,12 +101,6 @@ class GiveWay:
                 break
         else:
             chosen = int((room + 0.05 * worth).argmax())
-        self.info = (
-            int(fine.sum()),
-            round(float(room[chosen]), 2),
-            round(math.degrees(aim.bearing)),
-            round(float(free[0]), 2),
-        )
         return self._go(
             observation, float(headings[chosen]), float(speeds[chosen]), float(lengths[chosen])
         )
