@@ -13,6 +13,7 @@ from fuzzyq_bullet.problems import Loc, Problem, key_path
 from fuzzyq_bullet.quantities import ANGLE_KEYS
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.files import problem_lines
+from fuzzyq_bullet.scenario.motion_warnings import doubtful_motions
 from fuzzyq_bullet.shapes.outlines import FINEST
 
 NO_WAY = "there is no way from the start to the goal for the robot, wherever it drives"
@@ -24,7 +25,8 @@ def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
     They are: no way to the goal at all, although it is expected to be reached; a limit of time, of
     decisions or an expectation that the robot could not keep on a straight line at full speed; an
     angle that looks like degrees; rules with an input that belongs to none of its sets; a polygon
-    with a tip so sharp, or a part so thin, that the detection lines may see it too late.
+    with a tip so sharp, or a part so thin, that the detection lines may see it too late; an
+    obstacle that moves through what stands, out of the arena, or into the robot at the start.
 
     Args:
         file: The scenario file.
@@ -34,6 +36,8 @@ def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
     found = [*_degrees(given), *_too_short(given), *_gaps(given), *_too_thin(given)]
     if given.expect.outcome == "goal" and not has_way(realised):
         found.append(Problem(("goal",), NO_WAY))
+    doubtful = doubtful_motions(realised, len(given.obstacles))
+    found += [Problem(loc, why) for loc, why in doubtful]
     return problem_lines(file, found)
 
 

@@ -95,7 +95,7 @@ MOVER_COLUMNS: Columns = {
 
 
 def movers_csv(trajectory: Trajectory, *, units: bool = False) -> str:
-    """Return where the moving obstacles were as CSV (docs/record.md); see ``columns.csv_of``."""
+    """Return where the moving obstacles were as CSV; see docs/reference/record.md, ``csv_of``."""
     poses, moving = trajectory.movers, trajectory.scenario.movers
     count = poses.shape[1]
     rows = {

@@ -204,7 +204,7 @@ class Trajectory:
         )
 
     def csv(self, group: Literal["ticks", "decisions"], *, units: bool = False) -> str:
-        """Return the ticks or the decisions as CSV (docs/record.md); see ``columns.csv_of``."""
+        """Return the ticks or decisions as CSV (docs/reference/record.md); see ``csv_of``."""
         told = TICKS if group == "ticks" else self.decision_columns
         return csv_of(told, vars(getattr(self, group)), units=units)
 

@@ -20,7 +20,7 @@ from fuzzyq_bullet.columns import Columns
 from fuzzyq_bullet.planning.commands import COMMAND_FIELDS
 from fuzzyq_bullet.trajectory import DECISIONS, TICKS, Decisions, Ticks
 
-PAGE = Path(__file__).parent.parent / "docs" / "record.md"
+PAGE = Path(__file__).parent.parent / "docs" / "reference" / "record.md"
 GROUPS = {"ticks": TICKS, "decisions": DECISIONS}
 
 

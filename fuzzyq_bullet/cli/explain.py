@@ -59,7 +59,7 @@ def explain(
     """Show which fuzzy rules fire, how strongly, and the turn and step that follow.
 
     With --policy also what each rule has learned; then D and DF may be left out. With --export
-    write the controller to a file, to be changed and driven with (docs/rules.md).
+    write the controller to a file, to be changed and driven with (docs/how-to/rules.md).
 
     Raises:
         UserError: If an input lies outside its domain, is missing or is not a number, there are

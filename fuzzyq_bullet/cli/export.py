@@ -40,7 +40,7 @@ def export(
     CSV: what the robot did at every tick, every decision, and where moving obstacles were, if
     there are any; the unit of a column stands in brackets in its heading. MCAP: scene, robot,
     detection lines, ticks, decisions and events over simulated time, to be played in Foxglove.
-    What all of it means: docs/record.md.
+    What all of it means: docs/reference/record.md.
 
     Raises:
         UserError: If no form is asked for, its extra is missing, the record cannot be read, or a

@@ -69,7 +69,7 @@ RulesOption: TypeAlias = Annotated[
     typer.Option(
         metavar="RULES",
         help="Table 4 of the paper, corrected or printed; or a .yaml, .fll or .fis file of your "
-        "own (docs/rules.md).",
+        "own (docs/how-to/rules.md).",
         show_default="corrected",
     ),
 ]

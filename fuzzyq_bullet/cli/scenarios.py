@@ -100,7 +100,8 @@ def import_map(
     """Make a scenario file from a map, and print its path.
 
     Reads ROS maps, Gazebo worlds, pictures, MovingAI maps and tasks, and worlds of ir-sim
-    (docs/maps.md). What the scenario cannot hold is named on stderr and at the head of the file.
+    (docs/how-to/maps.md). What the scenario cannot hold is named on stderr and at the head of the
+    file.
 
     Raises:
         UserError: If there is no importer for the map, it is wrong, or the file cannot be written.

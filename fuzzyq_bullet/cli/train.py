@@ -71,7 +71,7 @@ def train(
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Rules of your own whose weights fuzzy-q-lambda learns (docs/rules.md).",
+            help="Rules of your own whose weights fuzzy-q-lambda learns (docs/how-to/rules.md).",
             **HOW,
         ),
     ] = None,

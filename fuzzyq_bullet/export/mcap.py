@@ -39,7 +39,7 @@ _LEVELS = {"goal": LogLevel.Info, "collision": LogLevel.Error}
 
 
 def mcap_of(trajectory: Trajectory) -> bytes:
-    """Return a record as an MCAP file; docs/record.md lists its topics."""
+    """Return a record as an MCAP file; docs/reference/record.md lists its topics."""
     file, context = io.BytesIO(), Context()
     # In one thread it is compressed to the same bytes each time.
     options = MCAPWriteOptions(compression_threads=0)

@@ -6,7 +6,7 @@ drives to the frontier over which the path to the goal may be the shortest. Ther
 and goes on so, with everything it has seen in its exploration graph. The routine part takes over
 when the line to the goal leads nearer to it than the robot has ever been.
 
-``docs/escape.md`` says why it ends, and what it guarantees.
+``docs/explanation/escape.md`` says why it ends, and what it guarantees.
 """
 
 from __future__ import annotations

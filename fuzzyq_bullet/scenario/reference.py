@@ -31,7 +31,7 @@ obstacles:
 This page is made of the schema by `fuzzyq schema --markdown`; with `--plugin FILE` it has the keys
 of your own file as well. `fuzzyq schema` prints the JSON Schema itself, for editors.
 """
-_ELSEWHERE = {"ControllerDefinition": "a [controller](rules.md)"}
+_ELSEWHERE = {"ControllerDefinition": "a [controller](../how-to/rules.md)"}
 """Models that a page of their own explains."""
 _WITHIN = ("motion", "movers")
 """Keys within those of an obstacle or a layout that have keys of their own."""

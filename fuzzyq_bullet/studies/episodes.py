@@ -30,6 +30,8 @@ MOST_SEED = (2**63 - 1) // MOST_RUNS - 1
 _LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 _LONGEST = 300
 _ADDRESS = re.compile(r"0x[0-9a-fA-F]+")
+_LAST_OF_ALL = "error"
+"""The last column that every table has. New ones come behind it, and earlier tables lack them."""
 
 
 @dataclass(frozen=True)
@@ -202,6 +204,8 @@ class Row(BaseModel):
         mean_jerk: Mean of |jerk| (m/s³); None in the kinematic drive.
         rules_turn: Share of the decisions near something in which the rules turn the robot; None
             for a planner without rules.
+        at_fault: Whether the robot was at fault for its contact; None without one, and in tables
+            of versions that did not tell.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -226,6 +230,7 @@ class Row(BaseModel):
     turning_rad: float | None = None
     mean_jerk: float | None = None
     rules_turn: float | None = None
+    at_fault: bool | None = None
 
     @property
     def place(self) -> Place:
@@ -283,17 +288,19 @@ def as_csv(rows: Iterable[Row]) -> str:
 
 
 def from_csv(text: str) -> list[Row]:
-    """Return the rows of a CSV as ``as_csv`` writes it.
+    """Return the rows of a CSV as ``as_csv`` writes it, or wrote it with fewer columns.
 
     Raises:
         ValueError: If it is none; says in which line, and what is wrong there.
     """
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    names = list(Row.model_fields)
+    every = list(Row.model_fields)
+    least = every.index(_LAST_OF_ALL) + 1
     rows: dict[Key, Row] = {}
     try:
-        if next(reader, None) != names:
-            raise ValueError(f"must have the columns {','.join(names)}")
+        names = next(reader, [])
+        if names != every[: max(least, len(names))]:
+            raise ValueError(f"must have the columns {','.join(every)}")
         for cells in reader:
             if len(cells) != len(names):
                 raise ValueError(f"{len(cells)} columns instead of {len(names)}")

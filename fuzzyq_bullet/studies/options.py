@@ -33,7 +33,7 @@ from fuzzyq_bullet.wording import not_one_of, shorten
 NONE = "none"
 _TOLD = "json:"
 """What rules begin with that are no file, but what a plan holds of one."""
-RULES_HELP = "Rules of your own for the planners that have some: a file (docs/rules.md)."
+RULES_HELP = "Rules of your own for the planners that have some: a file (docs/how-to/rules.md)."
 PAPER = ("fuzzy", "improved-fuzzy", "q-learning", "q-lambda", "fuzzy-q-lambda")
 """The planners of Fig. 13 and Table 5, in the order in which they are shown."""
 GUARDED = {

@@ -216,7 +216,7 @@ def test_schema_is_one_that_the_bundled_scenarios_fulfil(fuzzyq: Call) -> None:
 
 
 def test_the_reference_tells_of_every_key_of_the_schema(fuzzyq: Call) -> None:
-    page = Path(__file__).parents[2] / "docs" / "scenario.md"
+    page = Path(__file__).parents[2] / "docs" / "reference" / "scenario.md"
     told = fuzzyq("schema", "--markdown").stdout
     assert told == page.read_text(), f"fuzzyq schema --markdown > {page} makes it anew"
     schema = json.loads(fuzzyq("schema").stdout)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import re
 import shutil
@@ -127,6 +129,22 @@ def test_rows_read_back_are_the_rows_written() -> None:
         row("c", 1, count=None, feasible=None, layout="semicircle", shortest_path_m=1 / 3),
     ]
     assert from_csv(as_csv(rows)) == rows
+    hit = [row("a", 0, outcome="collision", collisions=1, at_fault=False)]
+    assert from_csv(as_csv(hit)) == hit
+
+
+def test_a_table_without_the_columns_that_came_later_is_read() -> None:
+    rows = [row("a", 0), row("b", 0, outcome="error", error='x, "y"')]
+    lines = list(csv.reader(io.StringIO(as_csv(rows))))
+    least = lines[0].index("error") + 1
+    for columns in range(least, len(lines[0])):
+        text = io.StringIO()
+        csv.writer(text).writerows(line[:columns] for line in lines)
+        assert from_csv(text.getvalue()) == rows
+    text = io.StringIO()
+    csv.writer(text).writerows(line[: least - 1] for line in lines)
+    with pytest.raises(ValueError, match=r"line 1: must have the columns planner,.*,at_fault"):
+        from_csv(text.getvalue())
 
 
 # Which runs are watched

@@ -62,8 +62,8 @@ def load_controller(path: Path | str) -> ControllerDefinition:
     """Read a controller from a file.
 
     Args:
-        path: A ``.yaml`` (docs/rules.md), ``.fll`` (FuzzyLite Language) or ``.fis`` file (Fuzzy
-            Logic Toolbox) of a Mamdani controller with two inputs and two outputs.
+        path: A ``.yaml`` (docs/how-to/rules.md), ``.fll`` (FuzzyLite Language) or ``.fis`` file
+            (Fuzzy Logic Toolbox) of a Mamdani controller with two inputs and two outputs.
 
     Raises:
         UserError: If it cannot be read or is wrong; one line a mistake:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from statistics import geometric_mean
 
 from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.statistics import share
@@ -26,10 +28,11 @@ class Line:
         feasible: Fields with a way.
         reached: Those of them in which the goal was reached.
         contacts: Runs that ended in a contact, in all fields.
+        at_fault: Those of them for which the robot was at fault, or which do not tell.
         errors: Runs that failed themselves.
         least_clearance_m: Least distance to anything in any run (m).
-        time_ratio: Mean time over that of the undisturbed planner, over the fields that both
-            solved; None where there is none.
+        time_ratio: Geometric mean of the time over that of the undisturbed planner in the same
+            field, of the fields that both solved; None where there is none.
     """
 
     planner: str
@@ -39,6 +42,7 @@ class Line:
     feasible: int
     reached: int
     contacts: int
+    at_fault: int
     errors: int
     least_clearance_m: float | None
     time_ratio: float | None
@@ -57,8 +61,9 @@ def lines_of(
         own = by_label.get(label, {})
         plain = undisturbed.setdefault(planner, own)  # the first line of a planner is undisturbed
         both = [at for at, row in own.items() if row.success and at in plain and plain[at].success]
-        times = [sum(one[at].time_s or 0.0 for at in both) for one in (own, plain)]
+        ratios = [(own[at].time_s or math.nan) / (plain[at].time_s or math.nan) for at in both]
         told = strengths(name, level)
+        hit = [row for row in own.values() if row.collisions]
         near = [row.min_clearance_m for row in own.values() if row.min_clearance_m is not None]
         lines.append(
             Line(
@@ -68,10 +73,11 @@ def lines_of(
                 strength=_in_words(told),
                 feasible=sum(bool(row.feasible) for row in own.values()),
                 reached=sum(bool(row.feasible) and row.success for row in own.values()),
-                contacts=sum(row.collisions or 0 for row in own.values()),
+                contacts=len(hit),
+                at_fault=sum(row.at_fault is not False for row in hit),
                 errors=sum(row.error is not None for row in own.values()),
                 least_clearance_m=min(near, default=None),
-                time_ratio=times[0] / times[1] if both else None,
+                time_ratio=geometric_mean(ratios) if ratios else None,
             )
         )
     return lines
@@ -99,15 +105,20 @@ def shown(lines: Sequence[Line], about: str) -> Table:
                 f"{line.reached} of {line.feasible}",
                 interval,
                 str(line.contacts),
+                str(line.at_fault),
                 cell(line.least_clearance_m, ".3f"),
                 cell(line.time_ratio, ".2f"),
             ]
         )
-    heads = ("planner", "disturbance", "strength", "reached", "95 %", "contacts", "least m", "time")
+    heads = (
+        "planner", "disturbance", "strength", "reached", "95 %", "contacts", "at fault", "least m",
+        "time",
+    )  # fmt: skip
     caption = (
         f"What disturbances do: {about}. reached: of the fields with a way, with Wilson's "
-        "interval; least: distance to anything, in any run; time: over that of the undisturbed "
-        "planner, in the fields that both solved."
+        "interval; at fault: contacts for which the robot was at fault; least: distance to "
+        "anything, in any run; time: geometric mean of the time over that of the undisturbed "
+        "planner in the same field, of the fields that both solved."
     )
     return Table(caption, heads, rows, left=(0, 1, 2))
 
