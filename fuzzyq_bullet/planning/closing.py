@@ -3,7 +3,7 @@
 What moves straight on is taken to go on so until it meets something that stands, give or take
 ``FASTER``. From there on, or from now on where it cannot be told, it may be anywhere within its
 greatest speed times the time. For as long as the robot goes on, brakes and has stood for ``STOOD``,
-its disc must meet none of these circles. What stands has a speed of 0, and is the safety filter's own affair.
+its disc must meet none of these circles. What stands is the safety filter's affair.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from fuzzyq_bullet.planning.base import (
     LONGEST_STRIDE,
     STEP_UNIT,
     USUAL_SPEED,
-    Floats,
     Motion,
     Observation,
 )
@@ -150,5 +149,5 @@ def _safe_step(decision: Decision, observation: Observation, traffic: Traffic) -
         places = observation.position + step * parts[:, None] * ahead
         apart = np.linalg.norm(places[:, None] - traffic.points, axis=2)
         if ((apart - times[:, None] * traffic.speeds).min(axis=1) > near).all():
-            return step
+            return float(step)
     return 0.0

@@ -68,8 +68,8 @@ class GiveWay:
         motion = observation.motion
         if motion is None or not traffic.tracks:
             return self._go_on(aim)
-        around = aim.bearing + np.arange(HEADINGS) * (math.tau / HEADINGS)
-        free = np.maximum(_free(observation, traffic.standing, around) - SHORT, 0.0)
+        around = np.float64(aim.bearing) + np.arange(HEADINGS) * (math.tau / HEADINGS)
+        free: Floats = np.maximum(_free(observation, traffic.standing, around) - SHORT, 0.0)
         wanted = min(aim.reach, max(free[0], 0.0))
         headings = np.concatenate([[aim.bearing, observation.heading], around, around])
         fast = motion.max_speed

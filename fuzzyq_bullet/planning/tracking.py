@@ -325,7 +325,7 @@ def circle_of(
         table = np.column_stack([2.0 * local, np.ones(len(local))])
         (a, b, c), *_ = np.linalg.lstsq(table, (local**2).sum(axis=1), rcond=None)
         radius = math.sqrt(max(0.0, c + a * a + b * b))
-        centre = middle + (a, b)
+        centre = middle + np.array([a, b])
         off = np.abs(np.linalg.norm(points - centre, axis=1) - radius).max()
         behind = np.linalg.norm(centre - origin) > np.linalg.norm(points - origin, axis=1).min()
         if off <= tolerance and radius <= LARGEST and behind:
