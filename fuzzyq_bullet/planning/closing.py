@@ -22,7 +22,8 @@ from fuzzyq_bullet.planning.base import (
 )
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.rollout import rollout
-from fuzzyq_bullet.planning.tracking import FASTER, Traffic
+from fuzzyq_bullet.planning.tracking import Traffic
+from fuzzyq_bullet.planning.tracks import FASTER
 
 STOOD = 0.3
 """How long the robot must have stood before anything touches it (s)."""
