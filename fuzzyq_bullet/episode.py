@@ -41,6 +41,8 @@ Observer: TypeAlias = Callable[[RobotState, Decision, RobotState], None]
 when the next one is due. The run waits for it, and is the same whatever it does."""
 
 STUCK_TIME = 15.0
+WAITING = 4.0
+"""Where things move, a robot may stay at one place for so many times as long: it may wait."""
 STUCK_RADIUS = 0.1
 """A robot that stays within this distance (m) for ``STUCK_TIME`` seconds is stuck: longer than it
 may take in a narrow place to turn round, try a way twice, and give it up. A robot that is slower
@@ -178,6 +180,8 @@ class Episode:
         self._driver = _driver(world, scenario, rate)
         self._decisions: list[tuple[int, Decision]] = []
         self._asked: dict[int, Twist] = {}
+        if scenario.movers:
+            patience *= WAITING
         self._standstill = _Standstill(self.now, patience * self._driver.slowness)
         self.outcome: Outcome | None = None
 

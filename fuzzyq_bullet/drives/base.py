@@ -59,6 +59,7 @@ class Driver(ABC):
         self._field, self._radius = world.field, scenario.robot.radius
         world.movers.start(scenario.seed)
         self._movers = world.movers
+        self._closing_speed = self._movers.fastest(scenario.limits.time)
         self._goal = scenario.goal
         self._targets = scenario.targets
         self._passing = Passing(scenario.via, scenario.start.position)
@@ -94,6 +95,7 @@ class Driver(ABC):
             motion=self._motion,
             unit=self._radius,
             uncertainty=self._uncertainty + (self._sensor.range if jumped else 0.0),
+            closing_speed=self._closing_speed,
         )
 
     def _note(self, state: RobotState) -> None:

@@ -8,10 +8,8 @@ from typing import NamedTuple
 from fuzzyq_bullet.drives.base import longest_step_time
 from fuzzyq_bullet.geometry import wrap_angle
 from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.planning.rollout import TURN_GAIN
 from fuzzyq_bullet.scenario.robot import Robot
-
-TURN_GAIN = 4.0
-"""Turn rate for an error of heading of 1 rad (1/s)."""
 
 GRIP = 2.5
 """Greatest sideways acceleration v·ω that the tyres are asked to hold (m/s²): a robot that is so

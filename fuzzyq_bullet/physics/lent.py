@@ -17,7 +17,7 @@ _SPARE: list[list[float]] = []
 def lent(
     vertices: Sequence[Sequence[float]], triangles: Sequence[int]
 ) -> Iterator[tuple[list[list[float]], list[int]]]:
-    """Lend lists of a mesh's corners (m) and of its triangles' indices, for one call of PyBullet."""
+    """Lend lists of a mesh's corners (m) and of its triangles' indices for one call."""
     corners, indices = [_a_spare_list() for _ in vertices], list(triangles)
     for corner, vertex in zip(corners, vertices, strict=True):
         corner[:] = vertex

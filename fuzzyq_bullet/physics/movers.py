@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.scenario.movers import courses_of, moves
+from fuzzyq_bullet.scenario.movers import courses_of, fastest, moves
 from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
 from fuzzyq_bullet.shapes.motion import MAX_MOTION_SPEED, STILL, Course, placed, seen_from
@@ -63,6 +63,10 @@ class Mover:
     def begin(self, course: Course) -> None:
         """Put it at the beginning of its way."""
         self._course, self._halted = course, 0.0
+
+    def way(self) -> tuple[Course, float]:
+        """Return its way, and the radius (m) of a circle about its centre that holds all of it."""
+        return self._course, self.extent
 
     def halt(self, time: float) -> None:
         """Let its clock stand for a time (s)."""
@@ -146,6 +150,10 @@ class Movers:
         for one in self.members:
             self._put_solid(one)
         self.show()
+
+    def fastest(self, time: float) -> float:
+        """Return how fast (m/s) any of them is at most, until a time (s); 0 if none moves."""
+        return max((fastest(*one.way(), time) for one in self.members), default=0.0)
 
     def poses(self) -> Floats:
         """Return where they are, shape (M, 3): x, y (m) of the centre, and the turn (rad)."""

@@ -181,6 +181,8 @@ class Observation:
         unit: S_p, the unit of the fuzzy controller (m): the robot's radius.
         uncertainty: How much less may be free than the sensor tells (m), by its noise and whatever
             else the scenario disturbs.
+        closing_speed: How fast what moves, or is not seen yet, may come (m/s): the greatest speed
+            of the scenario's moving obstacles. 0 where all obstacles stand.
     """
 
     time: float
@@ -196,6 +198,7 @@ class Observation:
     motion: Motion | None = None
     unit: float = STEP_UNIT
     uncertainty: float = 0.0
+    closing_speed: float = 0.0
 
     def sense(self, headings: Sequence[float]) -> list[float]:
         """Return the free distance (m) along each of the world headings (rad).

@@ -7,13 +7,17 @@ such a frontier comes last, but it stays a candidate.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fuzzyq_bullet.occupancy import EIGHT, OccupancyGrid
 from fuzzyq_bullet.planning.base import Floats
 from fuzzyq_bullet.planning.scan import Point
+
+Flags: TypeAlias = NDArray[np.bool_]
 
 CELL = 0.1
 """Side of a cell (m); doubled until the grid has no more than ``MOST`` cells."""
@@ -57,6 +61,17 @@ class ObstacleMap:
             corners = boundary.reshape(-1, 2)
             self._low = _least(self._low, corners.min(axis=0).tolist())
             self._high = _greatest(self._high, corners.max(axis=0).tolist())
+
+    def forget(self, seen_through: Callable[[Floats, float], Flags]) -> None:
+        """Forget what was remembered where something was, and is not any more.
+
+        Args:
+            seen_through: Tells which points (m), shape (K, 2), are seen to be free now: as far as a
+                ray goes, or as far as the robot's disc does (given its radius, m).
+        """
+        self._hits = self._hits[~seen_through(self._hits * GRAIN, 0.0)]
+        middles = (self._ends[:2] + self._ends[2:]).T / 2.0
+        self._ends = self._ends[:, ~seen_through(middles, self._radius)]
 
     def in_sight(self, start: Point, goal: Point) -> bool:
         """Return whether the straight line between two points (m) crosses no boundary."""

@@ -15,6 +15,7 @@ import math
 
 from fuzzyq_bullet.planning.aim import Aim, along_heading, towards_goal
 from fuzzyq_bullet.planning.base import USUAL_RANGE, Observation
+from fuzzyq_bullet.planning.cost_to_go import NO_HITS
 from fuzzyq_bullet.planning.decision import Mode
 from fuzzyq_bullet.planning.exploration import NEAR, ExplorationGraph, Judge
 from fuzzyq_bullet.planning.frontiers import Frontier
@@ -57,6 +58,9 @@ class Escape:
         following: Whether the avoidance is sustained. If not, it is the plain breakout of Fig. 6,
             which remembers nothing.
         graph: What is known from episodes before, if anything is.
+
+    Attributes:
+        moving: Points (m) of what moves now, shape (M, 2); they are not remembered.
     """
 
     def __init__(self, *, following: bool = True, graph: ExplorationGraph | None = None) -> None:
@@ -76,6 +80,7 @@ class Escape:
         self._straight = False
         self._mark = math.nan
         self._goal: Point | None = None
+        self.moving = NO_HITS
 
     def choose_by(self, judge: Judge) -> None:
         """Let somebody else judge ways out from now on."""
@@ -140,7 +145,7 @@ class Escape:
 
     def _scan(self, observation: Observation) -> None:
         """Scan all around, and choose the open path or the frontier to go to."""
-        self._graph.scan(observation)
+        self._graph.scan(observation, self.moving)
         self._scanned_at = observation.position
         self._on_open_path = False
         if self._graph.looks_from(observation.position) > MOST_LOOKS:
@@ -158,7 +163,7 @@ class Escape:
 
     def _scan_again(self, observation: Observation, tried: Frontier) -> None:
         """Scan on the way to a frontier, and go for another if that has become better."""
-        self._graph.scan(observation)
+        self._graph.scan(observation, self.moving)
         self._scanned_at = observation.position
         best = self._graph.best_frontier(observation, tried, BETTER * observation.size)
         if best is None:
@@ -198,7 +203,19 @@ class Escape:
                 self._fail(tried)
             self._scan(observation)
             self._mode = "following"
-        return towards_goal(observation)._replace(mode=self._mode, reach=0.0, hopeless=True)
+        wait = towards_goal(observation)._replace(mode=self._mode, reach=0.0)
+        if observation.closing_speed == 0.0:
+            return wait._replace(hopeless=True)
+        self._begin_anew()  # what was in the way may have gone
+        return wait
+
+    def _begin_anew(self) -> None:
+        """Forget all that was explored and tried: where things move, it may have changed."""
+        judge, self._graph = self._graph.judge, ExplorationGraph()
+        self._graph.judge = judge
+        self._frontier, self._follower = None, PathFollower([])
+        self._failed, self._left = [], []
+        self._on_open_path = self._distrusts_map = False
 
     def _along(self, segment: Segment, observation: Observation, tried: Frontier) -> Aim:
         """Aim along the next segment of the way to a frontier, or of an open path."""

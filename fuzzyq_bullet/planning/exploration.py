@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import NamedTuple, TypeAlias
 
-from fuzzyq_bullet.planning.base import Observation
-from fuzzyq_bullet.planning.cost_to_go import TIGHT, ObstacleMap
+from fuzzyq_bullet.planning.base import Floats, Observation
+from fuzzyq_bullet.planning.cost_to_go import NO_HITS, TIGHT, ObstacleMap
 from fuzzyq_bullet.planning.frontiers import (
     Frontier,
     along,
@@ -153,14 +153,26 @@ class ExplorationGraph:
         if not self._nodes or math.dist(self._nodes[-1].point, here) >= SPACING:
             self._add(here)
 
-    def scan(self, observation: Observation) -> None:
-        """Scan all around, and add what was seen: edges, obstacles and frontiers."""
+    def scan(self, observation: Observation, moving: Floats = NO_HITS) -> None:
+        """Scan all around, and add what was seen: edges, obstacles and frontiers.
+
+        Where things move, what was remembered and is not there any more is forgotten.
+
+        Args:
+            observation: What is observed.
+            moving: Points (m) of what moves, shape (M, 2): they are not remembered.
+        """
         here, self.size = observation.position, observation.size
         index = self._add(here)
         node = self._nodes[index]
         node.scan = scan = scan_360(observation)
         self._scanned.append(node)
-        self._obstacles.add(scan.boundary, scan.hits, scan.radius)
+        if observation.closing_speed > 0.0:
+            self._obstacles.forget(partial(scan.sees_through, here))
+            stands = scan.without(moving)
+            self._obstacles.add(stands.boundary, stands.hits, scan.radius)
+        else:
+            self._obstacles.add(scan.boundary, scan.hits, scan.radius)
         for other, known in enumerate(self._nodes[:index]):
             if node.sees(known.point):
                 node.edges[other] = known.edges[index] = math.dist(known.point, here)

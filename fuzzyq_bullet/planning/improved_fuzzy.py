@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from fuzzyq_bullet.planning.aim import towards_goal
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision, Mode
 from fuzzyq_bullet.planning.escape import Escape
@@ -11,6 +12,7 @@ from fuzzyq_bullet.planning.exploration import ExplorationGraph, Judge, ToGo, kn
 from fuzzyq_bullet.planning.fuzzy import Routine, Situation
 from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings, RecoverySettings
+from fuzzyq_bullet.planning.traffic import TrafficSense
 
 
 class ImprovedFuzzyBase:
@@ -29,6 +31,7 @@ class ImprovedFuzzyBase:
         self._escape = Escape(following=settings.following) if settings.breakout else None
         self._guard = settings.guard
         self._breakout_at = settings.breakout_at
+        self._traffic = TrafficSense()
         self.mode: Mode = "routine"
 
     def know(self, to_go: ToGo) -> None:
@@ -47,9 +50,15 @@ class ImprovedFuzzyBase:
 
     def sense(self, observation: Observation) -> Situation:
         """Choose the aim, and return what is seen towards it: the first half (Steps 4 to 9)."""
-        aim = None
+        aim, moving = None, observation.closing_speed > 0.0
+        if moving:
+            self._traffic.update(observation)
         if self._escape is not None:
-            aim = self._escape.aim(observation, self._breakout_at)
+            self._escape.moving = self._traffic.moving
+            aim = self._escape.aim(self._traffic.patient(observation), self._breakout_at)
+        if moving:
+            aim = self._traffic.aim(observation, aim or towards_goal(observation))
+        if aim is not None:
             self.mode = aim.mode
         return self._routine.sense(observation, aim)
 
@@ -68,7 +77,10 @@ class ImprovedFuzzyBase:
         """
         c_f = math.nan if self._escape is None else self._breakout_at
         decision = self._routine.step(situation, weights, c_f)
-        return safety_filter(decision, observation) if self._guard else decision
+        if not self._guard:
+            return decision
+        decision = safety_filter(decision, observation)
+        return self._traffic.limit(decision, observation)
 
 
 class ImprovedFuzzyPlanner(ImprovedFuzzyBase):

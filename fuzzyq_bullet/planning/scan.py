@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, TypeAlias, TypeVar
 
@@ -31,6 +31,8 @@ JUMP = 0.3
 ends, and what is behind it is hidden; where by less, one boundary goes on. So many times as much
 for a larger robot."""
 
+CLEARLY = 0.1
+"""What is seen through by so much (m) is not there any more."""
 TOUCH = 0.02
 """Whatever is no farther than this from the disc stops it (m)."""
 CLOSE = 0.005
@@ -46,6 +48,15 @@ def _around(count: int) -> tuple[Floats, NDArray[np.complex128]]:
     headings: Floats = np.arange(count, dtype=np.float64) * (math.tau / count)
     turns: NDArray[np.complex128] = np.exp(1j * headings)
     return headings, turns
+
+
+def ray_headings(observation: Observation) -> tuple[list[float], NDArray[np.complex128]]:
+    """Return the world headings (rad) of the thin rays of a scan, and the same as complex numbers.
+
+    Whoever looks along these shares the rays with a scan at the same instant.
+    """
+    headings, turns = _around(MANY_RAYS if observation.sees_far else RAYS)
+    return headings.tolist(), turns
 
 
 def _headings(farther: float) -> int:
@@ -80,6 +91,44 @@ class Scan:
     radius: float
     size: float = 1.0
 
+    def sees_through(self, here: Point, points: Floats, radius: float) -> NDArray[np.bool_]:
+        """Return which points (m), shape (K, 2), are seen to be free: by some way, ``CLEARLY``.
+
+        Args:
+            here: Where the scan was made (m).
+            points: The points.
+            radius: Whether the robot's disc, or else a thin ray (0), comes past them.
+        """
+        rel = points - np.array(here)
+        far, bearing = np.hypot(*rel.T), np.mod(np.arctan2(rel[:, 1], rel[:, 0]), math.tau)
+        if radius > 0.0:
+            at = np.searchsorted(self.headings, bearing)
+            lengths = np.array(self.lengths)
+            free = np.minimum(lengths[at - 1], lengths[at % len(lengths)])
+        else:
+            met = self.hits - np.array(here)
+            reach, theirs = np.hypot(*met.T), np.arctan2(met[:, 1], met[:, 0])
+            off = np.abs(np.remainder(bearing[:, None] - theirs + math.pi, math.tau) - math.pi)
+            near = np.where(off <= 1.5 * math.tau / RAYS, reach, self.range)
+            free = near.min(axis=1, initial=self.range)
+        return np.asarray(far < free - CLEARLY)
+
+    def without(self, points: Floats) -> Scan:
+        """Return it without the boundary and the hits of what is at points (m), shape (M, 2)."""
+        if not len(points):
+            return self
+
+        def away(some: Floats, far: float) -> NDArray[np.bool_]:
+            apart = np.linalg.norm(some[:, None] - points, axis=2)
+            return np.asarray(apart.min(axis=1, initial=np.inf) > far)
+
+        middles = self.boundary.reshape(-1, 2, 2).mean(axis=1)
+        return replace(
+            self,
+            boundary=self.boundary[away(middles, self.radius + CLEARLY)],
+            hits=self.hits[away(self.hits, CLEARLY)],
+        )
+
     def free(self, heading: float) -> float:
         """Return the free distance (m) along a heading: the lesser of its two neighbours."""
         at = bisect_left(self.headings, heading % math.tau)
@@ -96,8 +145,8 @@ def scan_360(observation: Observation) -> Scan:
     farther = observation.range / (USUAL_RANGE * observation.unit)
     far = observation.sees_far
     first_headings, first_turns = _around(_headings(farther) if far else HEADINGS)
-    ray_headings, turns = _around(MANY_RAYS if far else RAYS)
-    distance = observation.look(ray_headings.tolist())
+    rays, turns = ray_headings(observation)
+    distance = observation.look(rays)
     met = distance < observation.range + observation.radius
     hits, distance = turns[met] * distance[met], distance[met]
     wide_squared = min(observation.radius, distance.min(initial=np.inf) - 1e-3) ** 2

@@ -12,14 +12,10 @@ from fuzzyq_bullet.problems import Loc
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
-from fuzzyq_bullet.scenario.movers import courses_of, standing_field
+from fuzzyq_bullet.scenario.movers import courses_of, fastest, standing_field
 from fuzzyq_bullet.shapes import Pose, Shape
-from fuzzyq_bullet.shapes.motion import MAX_MOTION_SPEED, Course, placed, seen_from
+from fuzzyq_bullet.shapes.motion import MAX_MOTION_SPEED, placed, seen_from
 
-_SAMPLE = 0.05
-"""Time between two looks at a motion (s)."""
-_LONGEST = 60.0
-"""How much of a motion is looked at (s)."""
 _ROUNDING = 1e-3
 
 
@@ -45,7 +41,7 @@ def motion_conflicts(scenario: Scenario) -> list[tuple[Loc, str]]:
             continue
         shape, first = scenario.obstacles[i], course.pose(0.0)
         found += [(("obstacles", i, "motion"), why) for why in _begins(scenario, shape, first)]
-        if (fast := _fastest(course, scenario.limits.time)) > MAX_MOTION_SPEED + _ROUNDING:
+        if (fast := fastest(course, 0.0, scenario.limits.time)) > MAX_MOTION_SPEED + _ROUNDING:
             why = f"moves at {fast:.2f} m/s; at most {MAX_MOTION_SPEED:g} m/s"
             found.append((("obstacles", i, "motion"), why))
     return found
@@ -81,10 +77,3 @@ def _begins(scenario: Scenario, shape: Shape, pose: Pose) -> Iterator[str]:
         inside = (low - radius >= (left, bottom)).all() and (high + radius <= (right, top)).all()
         if not inside:
             yield f"begins in a wall, at ({at[0]:g}, {at[1]:g})"
-
-
-def _fastest(course: Course, time: float) -> float:
-    """Return the greatest speed (m/s) of a motion, as far as it is looked at."""
-    times = np.arange(0.0, min(time, _LONGEST) + _SAMPLE, _SAMPLE).tolist()
-    poses = np.array([course.pose(t)[:2] for t in times])
-    return float(np.hypot(*np.diff(poses, axis=0).T).max(initial=0.0)) / _SAMPLE

@@ -14,6 +14,10 @@ from fuzzyq_bullet.shapes.motion import Course, Surroundings
 STREAM = 20
 """Where the streams of random numbers of the motions begin among those of the seed: obstacle i has
 the stream (20, i) to itself."""
+SAMPLE = 0.05
+"""Time between two looks at a motion (s)."""
+LONGEST = 60.0
+"""How much of a motion is looked at (s)."""
 
 
 def moves(obstacle: Shape) -> bool:
@@ -34,6 +38,20 @@ def movers(obstacles: Sequence[Shape]) -> tuple[int, ...]:
 def standing_field(obstacles: Sequence[Shape], arena: Arena) -> Field:
     """Return the geometry of what stands still; edges of the arena without walls count as walls."""
     return Field.of(standing(obstacles), arena.model_copy(update={"walls": True}))
+
+
+def fastest(course: Course, extent: float, time: float) -> float:
+    """Return the greatest speed (m/s) of any part of an obstacle, as far as it is looked at.
+
+    Args:
+        course: Its way.
+        extent: Radius of the circle that holds all of it (m).
+        time: Until when (s); at most a minute is looked at.
+    """
+    times = np.arange(0.0, min(time, LONGEST) + SAMPLE, SAMPLE).tolist()
+    steps = np.diff(np.array([course.pose(t) for t in times]), axis=0)
+    turned = np.abs(np.remainder(steps[:, 2] + np.pi, 2.0 * np.pi) - np.pi)
+    return float((np.hypot(steps[:, 0], steps[:, 1]) + extent * turned).max(initial=0.0)) / SAMPLE
 
 
 def courses_of(obstacles: Sequence[Shape], arena: Arena, seed: int) -> dict[int, Course]:

@@ -72,10 +72,17 @@ def aim_name(trajectory: Trajectory, index: int) -> str:
     """Return what a decision aims at, in words: goal, via point, or the way out."""
     name, position = target_of(trajectory, index)
     aim = trajectory.decisions.aim[index].tolist()
-    routine = MODES[int(trajectory.decisions.mode[index])] == "routine"
-    if routine or not math.isfinite(sum(aim)):
+    straight = MODES[int(trajectory.decisions.mode[index])] == "routine"
+    if (straight and not gives_way(trajectory, index)) or not math.isfinite(sum(aim)):
         return name
     return name if math.dist(aim, position) < 1e-9 else "the way out"
+
+
+def gives_way(trajectory: Trajectory, index: int) -> bool:
+    """Whether the aim is a temporary goal that keeps the robot clear of what moves."""
+    decisions = trajectory.decisions
+    routine = MODES[int(decisions.mode[index])] == "routine"
+    return routine and math.isfinite(float(decisions.target[index].sum()))
 
 
 def target_of(trajectory: Trajectory, index: int) -> tuple[str, Point]:
@@ -189,8 +196,10 @@ def _ends(trajectory: Trajectory, index: int) -> str:
 
 
 def _makes_way(trajectory: Trajectory, index: int) -> str:
-    """Return that the robot waits for what comes, if it does."""
+    """Return that the robot waits for what comes, or gives way to it, if it does."""
     decisions, tick = trajectory.decisions, int(trajectory.decisions.tick[index])
+    if gives_way(trajectory, index) and float(decisions.reach[index]) >= _STANDS:
+        return f"{approaching(trajectory, tick) or 'Something moves near by'}: gives way"
     if min(float(decisions.step[index]), float(decisions.reach[index])) >= _STANDS:
         return ""
     coming = approaching(trajectory, tick)

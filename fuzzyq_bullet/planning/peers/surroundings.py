@@ -12,7 +12,7 @@ from pydantic import Field, Strict
 
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Floats, Observation
 from fuzzyq_bullet.planning.commands import CommandSettings
-from fuzzyq_bullet.planning.scan import MANY_RAYS, RAYS, USUAL_RANGE
+from fuzzyq_bullet.planning.scan import ray_headings
 
 TOUCHING = 1e-3
 """What stands nearer than the disc's edge is taken to be this much beyond it (m): nothing that the
@@ -61,12 +61,12 @@ class Surroundings:
 
 def look_around(observation: Observation) -> Surroundings:
     """Cast single rays in all directions: 120, or 720 where the robot sees farther than usual."""
-    far = observation.range > USUAL_RANGE * observation.unit + 1e-9
-    count = MANY_RAYS if far else RAYS
-    headings = np.arange(count, dtype=np.float64) * (math.tau / count)
-    distances = observation.look(headings.tolist())
+    headings, _ = ray_headings(observation)
+    distances = observation.look(headings)
     met = distances < observation.range + observation.radius - 1e-9
-    return Surroundings(headings, distances, met, observation.radius, observation.uncertainty)
+    return Surroundings(
+        np.array(headings), distances, met, observation.radius, observation.uncertainty
+    )
 
 
 def to_goal(observation: Observation) -> tuple[float, float]:

@@ -1,0 +1,118 @@
+"""Claims about telling what moves from what stands, from successive readings alone."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fuzzyq_bullet.geometry import Field
+from fuzzyq_bullet.planning.base import Observation, RangeSensor
+from fuzzyq_bullet.planning.tracking import Tracker
+from fuzzyq_bullet.scenario import Cylinder
+
+PERIOD, RANGE, WIDE = 0.05, 1.0, 0.22
+angles = st.floats(-math.pi, math.pi)
+
+
+def reading(time, position, obstacles, noise=0.0, rng=None):
+    """Return what a robot at a position sees of obstacles at a time."""
+    field = Field.of(obstacles)
+
+    def look(headings):
+        free = field.free_distance(position, headings, 0.0, RANGE + WIDE)
+        told = free + (rng.normal(0.0, noise, len(free)) if noise else 0.0)
+        return np.where(free < RANGE + WIDE, np.clip(told, 0.0, RANGE + WIDE), free)
+
+    return Observation(
+        time=time,
+        position=position,
+        heading=0.0,
+        speed=0.0,
+        turn_rate=0.0,
+        goal=(50.0, 0.0),
+        goal_radius=0.2,
+        range=RANGE,
+        radius=WIDE,
+        sensor=RangeSensor(lambda headings: [RANGE] * len(headings), look),
+        uncertainty=3.0 * noise,
+        closing_speed=0.6,
+    )
+
+
+def pillar(x, y, radius=0.25):
+    return Cylinder(shape="cylinder", position=(x, y), radius=radius)
+
+
+def along(heading, distance):
+    return distance * math.cos(heading), distance * math.sin(heading)
+
+
+@given(angles, angles, st.floats(0.15, 0.6), st.floats(0.0, 0.5), angles)
+@settings(max_examples=25, deadline=None)
+def test_the_velocity_of_a_disc_is_told_to_within_5_cm_a_second(place, goes, speed, own, drives):
+    tracker, found = Tracker(), 0
+    for k in range(30):
+        time = k * PERIOD
+        robot = along(drives, own * time)
+        start, moved = along(place, 0.8), along(goes, speed * time)
+        disc = (start[0] + moved[0], start[1] + moved[1])
+        if not 0.5 < math.dist(robot, disc) < 1.1:
+            break
+        traffic = tracker.update(reading(time, robot, [pillar(*disc)]))
+        for track in traffic.tracks if k >= 15 else ():
+            if track.velocity is None:  # it has been told to move for less than 0.1 s
+                continue
+            found += 1
+            assert math.dist(track.centre, disc) < 0.05
+            assert math.dist(track.velocity, along(goes, speed)) < 0.05
+    if k == 29 and own == 0.0:
+        assert found or math.cos(goes - place) > 0.9  # what goes straight away enters nothing free
+
+
+@given(angles, st.floats(0.0, 0.6), st.sampled_from([0.0, 0.005, 0.01]), st.integers(0, 2**32))
+@settings(max_examples=25, deadline=None)
+def test_what_stands_is_never_told_to_move(drives, own, noise, seed):
+    rng = np.random.default_rng(seed)
+    stands = [pillar(0.7, 0.4), pillar(-0.5, 0.8, 0.2), pillar(-0.4, 0.95, 0.2), pillar(0.2, -0.9)]
+    tracker = Tracker()
+    for k in range(40):
+        robot = along(drives, own * k * PERIOD)
+        if any(math.dist(robot, one.position) < one.radius + 0.2 for one in stands):
+            break
+        traffic = tracker.update(reading(k * PERIOD, robot, stands, noise, rng))
+        assert not len(traffic.moving)
+        assert not traffic.tracks
+    # What was seen for a while is not distrusted any more.
+    if own == 0.0:
+        assert not len(traffic.points)
+
+
+def test_what_has_just_come_into_sight_may_come_as_fast_as_was_said():
+    traffic = Tracker().update(reading(0.0, (0.0, 0.0), [pillar(0.8, 0.0)]))
+    assert len(traffic.points) > 5
+    assert traffic.speeds == pytest.approx(0.6)
+
+
+def test_what_moves_off_a_pillar_that_it_touches_is_told_apart_from_it():
+    tracker = Tracker()
+    for k in range(20):
+        mover = pillar(0.8, 0.28 + 0.3 * k * PERIOD)
+        both = [pillar(0.8, -0.25), mover]
+        traffic = tracker.update(reading(k * PERIOD, (0.0, 0.0), both))
+    [track] = traffic.tracks
+    assert track.velocity == pytest.approx((0.0, 0.3), abs=0.05)
+    assert math.dist(track.centre, mover.position) < 0.05
+
+
+def test_what_bounces_is_followed_the_other_way_within_a_quarter_of_a_second():
+    tracker = Tracker()
+    for k in range(26):
+        time = k * PERIOD
+        y = 0.4 - 0.4 * time if time < 1.0 else 0.4 * (time - 1.0)
+        traffic = tracker.update(reading(time, (0.0, 0.0), [pillar(0.8, y)]))
+    [track] = traffic.tracks
+    assert track.velocity == pytest.approx((0.0, 0.4), abs=0.05)
