@@ -102,6 +102,8 @@ def test_what_is_data_is_what_it_seems(page: Path, tmp_path: Path) -> None:
 def is_sound(one: Block, folder: Path) -> None:
     """Read YAML as what its keys say that it is: a job, a controller, options, or a scenario."""
     held = yaml.safe_load(one.code)
+    if isinstance(held, list):  # some steps of a job
+        held = {"jobs": {"part": {"steps": held}}}
     if "jobs" in held:
         for step in [step for job in held["jobs"].values() for step in job["steps"]]:
             for line in step.get("run", "").splitlines():

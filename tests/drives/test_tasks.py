@@ -70,7 +70,7 @@ def test_a_via_point_behind_a_trap_and_a_way_back_through_known_places() -> None
 @pytest.mark.parametrize(
     ("via", "why"),
     [
-        ([{"position": [5, 5]}], "overlaps the via point 1"),
+        ([{"position": [5, 5]}], "is 0.3 m inside obstacles"),
         ([{"position": [11, 5]}], "is outside the arena"),
         ([{"position": [1.3, 5]}], "is passed at once"),
         ([{"position": [2, 2]}, {"position": [2.1, 2]}], "is passed at once"),
