@@ -23,8 +23,8 @@ is blocked it creeps to the least dense. Cells behind the goal do not count, bec
 it would close the way into it. The paper's grid is filled by sonar over a longer time; here 120
 rays fill it at once.
 
-Tuning (docs/explanation/peers.md): the cost is the paper's; thresholds and speed are the first
-values that were tried, and solved 5 of 8 training fields within 90 s. They were not searched.
+Tuning (docs/explanation/peers.md): the cost is the paper's. The rest is the best of 10 settings of a
+random search on 12 training fields: 9 reached within 90 s, in 41.0 s on average.
 """
 
 from __future__ import annotations
@@ -67,21 +67,21 @@ class VfhSettings(PeerSettings):
 
     name: Literal["vfh"] = "vfh"
     safety: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
-        default=0.02, description="r_s: distance to keep besides half a detection line (m)."
+        default=0.05, description="r_s: distance to keep besides half a detection line (m)."
     )
-    high: _Share = Field(default=4.0, description="τ_high: a sector above it becomes blocked.")
-    low: _Share = Field(default=2.0, description="τ_low: a sector below it becomes free.")
+    high: _Share = Field(default=8.0, description="τ_high: a sector above it becomes blocked.")
+    low: _Share = Field(default=1.0, description="τ_low: a sector below it becomes free.")
     steepness: _Share = Field(
-        default=4.0, description="How much more a near cell counts than one at the rim."
+        default=10.0, description="How much more a near cell counts than one at the rim."
     )
     wide: Annotated[int, Field(strict=True, ge=2, le=SECTORS)] = Field(
-        default=16, description="s_max: an opening of more sectors is wide."
+        default=8, description="s_max: an opening of more sectors is wide."
     )
     goal_cost: _Share = Field(default=5.0, description="μ1: cost of a sector off the goal.")
     turn_cost: _Share = Field(default=2.0, description="μ2: of one off where it faces.")
     change_cost: _Share = Field(default=2.0, description="μ3: of one off what it chose before.")
     dense: Annotated[Number, Field(gt=0.0, le=1000.0)] = Field(
-        default=20.0, description="h_m: at this density of the direction taken it goes slowest."
+        default=40.0, description="h_m: at this density of the direction taken it goes slowest."
     )
 
     @field_validator("low")

@@ -102,8 +102,11 @@ def test_a_near_cell_counts_more_and_an_uncertain_one_less():
 
 def test_between_the_thresholds_a_sector_stays_what_it_was():
     near, far = field((0.6, 0.0, 0.15)), field((1.0, 0.0, 0.15))
-    planner = VfhPlanner(VfhSettings(high=14.0, low=5.0))
-    fresh = settled(VfhPlanner(VfhSettings(high=14.0, low=5.0)), moving(far, (0.0, 0.0), goal=GOAL))
+    planner = VfhPlanner(VfhSettings(high=14.0, low=5.0, steepness=4.0, safety=0.02))
+    fresh = settled(
+        VfhPlanner(VfhSettings(high=14.0, low=5.0, steepness=4.0, safety=0.02)),
+        moving(far, (0.0, 0.0), goal=GOAL),
+    )
     assert fresh.heading == pytest.approx(0.0)  # not dense enough to block
     blocked = settled(planner, moving(near, (0.0, 0.0), goal=GOAL))
     assert abs(blocked.heading) > 0.2
@@ -151,7 +154,7 @@ def test_the_grid_keeps_where_things_are_while_the_robot_moves():
 
 
 def test_it_passes_one_obstacle():
-    record = drive("vfh", [{"shape": "cylinder", "position": [5.0, 5.05], "radius": 0.3}])
+    record = drive("vfh", [{"shape": "cylinder", "position": [5.0, 5.15], "radius": 0.3}])
     assert record.outcome == "goal"
     assert record.ticks.time[-1] < 18.0
     assert record.ticks.position[:, 1].min() < 4.7  # by the shorter side
