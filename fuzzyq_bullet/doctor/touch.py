@@ -18,25 +18,33 @@ from fuzzyq_bullet.sensors.base import ExactSensor
 from fuzzyq_bullet.shapes import thinnest
 
 MOST_POSES = 800
-"""Poses on the grid, and again as many beside obstacles and walls."""
+"""At most so many poses are on the grid, and as many beside obstacles and walls."""
 _GRID = 2.0
-"""Neighbours are at least so far apart, in radii: the lines from each cross those from many."""
+"""Neighbouring poses are at least so far apart, in radii of the robot."""
 UNSEEN = WIDEST / 2 + 0.01
-"""A body may be so deep in what the sensor did not see (m): a right angle that points between two
-rays is half their distance deep in the body before they meet it. Solids are 1 mm off."""
+"""How deep (m) the body may be inside an obstacle that the sensor did not see. A right-angled corner
+between two rays is in the body by half their distance before a ray meets it. Solids may be 1 mm
+off."""
 _FELT = 0.005
-"""Where a ray ends there is a solid no farther away than this (m)."""
+"""A solid is no farther than this from the end of a ray (m)."""
 _LINES = 6
 """Directions in which the robot is moved from each pose."""
 _RAYS = 12
+"""Rays that are checked from each pose."""
 _BESIDE = 0.1
-"""Room that the poses beside an obstacle leave (m)."""
+"""Gap between the robot and the obstacle that it is put beside (m)."""
 _GOLDEN = math.pi * (3.0 - math.sqrt(5.0))
-"""Turn from one pose to the next (rad): no two look in the same directions."""
+"""The golden angle (rad): the turn from one pose to the next, so that no two look alike."""
 
 
 class _Mismatch(NamedTuple):
-    """A place (m) where sensor and physics differ, by how much (m), and in words."""
+    """Where sensor and physics differ.
+
+    Attributes:
+        place: Where (m).
+        by: By how much (m).
+        words: The difference in words.
+    """
 
     place: tuple[float, float]
     by: float
@@ -44,11 +52,11 @@ class _Mismatch(NamedTuple):
 
 
 def examine_touch(scenario: Scenario, listed: int) -> Iterator[Finding]:
-    """Yield each obstacle, or the walls, that the sensor and the robot's body do not agree on.
+    """Yield a finding for each obstacle, and the walls, that sensor and physics do not agree on.
 
-    All that stands still stands there at once. From poses on a grid over the arena, and beside
-    every obstacle, the robot is put wherever the sensor says that its way is free: there it must
-    touch nothing. Where a ray ends, a thin rod as high as the body must touch something.
+    The robot looks from poses on a grid over the arena, and beside every standing obstacle. It is
+    then put wherever the sensor says that its way is free: there it must touch nothing. Where a ray
+    ends, a thin rod as high as the body must touch something.
 
     Args:
         scenario: A realised scenario.
@@ -63,15 +71,15 @@ def examine_touch(scenario: Scenario, listed: int) -> Iterator[Finding]:
             if nearest not in worst or one.by > worst[nearest].by:
                 worst[nearest] = one
     for nearest in sorted(worst):
-        told = f"{worst[nearest].words} at ({worst[nearest].place[0]:.2f}, "
-        told += f"{worst[nearest].place[1]:.2f})"
+        one = worst[nearest]
+        text = f"{one.words} at ({one.place[0]:.2f}, {one.place[1]:.2f})"
         if nearest == WALL:
-            yield Finding("sight", ("arena",), told)
+            yield Finding("sight", ("arena",), text)
             continue
         i = standing[nearest]
         loc: Loc = ("obstacles", i) if i < listed else ("random",)
         drawn = "" if i < listed else f" (drawn as number {i})"
-        yield Finding("sight", loc, f"{scenario.obstacles[i].shape}{drawn}: {told}")
+        yield Finding("sight", loc, f"{scenario.obstacles[i].shape}{drawn}: {text}")
 
 
 def poses_of(scenario: Scenario) -> Floats:
@@ -103,7 +111,7 @@ def poses_of(scenario: Scenario) -> Floats:
 
 
 def _mismatches(world: Inspection, scenario: Scenario) -> Iterator[_Mismatch]:
-    """Yield where what the sensor tells and what the body touches are not the same."""
+    """Yield where sensor and physics differ, as seen from all poses with room for the robot."""
     robot = scenario.robot.spec
     sensor = CorridorSensor(
         ExactSensor(range=scenario.sensor.range),
@@ -112,39 +120,68 @@ def _mismatches(world: Inspection, scenario: Scenario) -> Iterator[_Mismatch]:
         np.random.default_rng(0),
         thinnest(scenario.standing),
     )
-    for k, (x, y) in enumerate(_free(poses_of(scenario), world.field, robot.radius).tolist()):
-        first = k * _GOLDEN
-        headings = [first + i * math.tau / _LINES for i in range(_LINES)]
-        if world.gap(x, y, first) <= 0.0:  # what stands here is found from where it does not
+    for k, (x, y) in enumerate(_with_room(poses_of(scenario), world.field, robot.radius).tolist()):
+        heading = k * _GOLDEN
+        if world.gap(x, y, heading) <= 0.0:  # poses beside this obstacle show what it is
             continue
-        for heading, free in zip(headings, sensor.sense((x, y), headings), strict=True):
-            cos, sin = math.cos(heading), math.sin(heading)
-            stops = max(1, math.ceil(free / (1.5 * robot.radius)))
-            for way in (free * i / stops for i in range(1, stops + 1)):
-                here = x + way * cos, y + way * sin
-                deep = -world.gap(*here, heading)
-                if deep > UNSEEN:
-                    yield _Mismatch(
-                        here,
-                        deep,
-                        f"the body is {deep * 1000:.0f} mm inside something that the sensor, "
-                        f"{way:.2f} m before, did not see",
-                    )
-                    break
-        rays = [first + i * math.tau / _RAYS for i in range(_RAYS)]
-        for ray, length in zip(rays, sensor.look((x, y), rays).tolist(), strict=True):
-            if length >= sensor.range + sensor.radius:
-                continue
-            end = x + length * math.cos(ray), y + length * math.sin(ray)
-            away = world.rod_gap(*end)
-            if away > _FELT:
-                far = f"{away * 1000:.0f} mm" if away < world.FAR else "far"
-                yield _Mismatch(
-                    end, away, f"the sensor sees something, the nearest solid is {far} away"
-                )
+        yield from _unseen(world, sensor, (x, y), heading, robot.radius)
+        yield from _untouched(world, sensor, (x, y), heading)
 
 
-def _free(places: Floats, field: Field, radius: float) -> Floats:
-    """Return those of the places (m) where there is room for the robot's disc."""
+def _unseen(
+    world: Inspection,
+    sensor: CorridorSensor,
+    place: tuple[float, float],
+    heading: float,
+    radius: float,
+) -> Iterator[_Mismatch]:
+    """Yield where the robot's body touches something though the sensor says that it is free.
+
+    Args:
+        world: What stands, in the physics.
+        sensor: The sensor.
+        place: Where the robot looks from (m).
+        heading: The first of the directions in which it is moved (rad).
+        radius: The robot's radius (m).
+    """
+    x, y = place
+    headings = [heading + i * math.tau / _LINES for i in range(_LINES)]
+    for line, free in zip(headings, sensor.sense(place, headings), strict=True):
+        cos, sin = math.cos(line), math.sin(line)
+        stops = max(1, math.ceil(free / (1.5 * radius)))
+        for way in (free * i / stops for i in range(1, stops + 1)):
+            here = x + way * cos, y + way * sin
+            depth = -world.gap(*here, line)
+            if depth > UNSEEN:
+                words = f"the body is {depth * 1000:.0f} mm inside something that the sensor, "
+                yield _Mismatch(here, depth, f"{words}{way:.2f} m before, did not see")
+                break
+
+
+def _untouched(
+    world: Inspection, sensor: CorridorSensor, place: tuple[float, float], heading: float
+) -> Iterator[_Mismatch]:
+    """Yield where a ray of the sensor ends though there is no solid.
+
+    Args:
+        world: What stands, in the physics.
+        sensor: The sensor.
+        place: Where the robot looks from (m).
+        heading: Heading of the first ray (rad).
+    """
+    x, y = place
+    rays = [heading + i * math.tau / _RAYS for i in range(_RAYS)]
+    for ray, length in zip(rays, sensor.look(place, rays).tolist(), strict=True):
+        if length >= sensor.range + sensor.radius:
+            continue
+        end = x + length * math.cos(ray), y + length * math.sin(ray)
+        gap = world.rod_gap(*end)
+        if gap > _FELT:
+            far = f"{gap * 1000:.0f} mm" if gap < world.FAR else "far"
+            yield _Mismatch(end, gap, f"the sensor sees something, the nearest solid is {far} away")
+
+
+def _with_room(places: Floats, field: Field, radius: float) -> Floats:
+    """Return the places (m) where there is room for the robot's disc."""
     kept: Floats = places[field.clearance(places) > radius]
     return kept

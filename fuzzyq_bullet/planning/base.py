@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.planning.commands import Answer
 
 Floats: TypeAlias = NDArray[np.float64]
+Flags: TypeAlias = NDArray[np.bool_]
 
 STEP_UNIT = 0.2
 """S_p of the default robot, the standard single step (m): the unit of the fuzzy controller."""

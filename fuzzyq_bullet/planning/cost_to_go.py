@@ -8,16 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fuzzyq_bullet.occupancy import EIGHT, OccupancyGrid
-from fuzzyq_bullet.planning.base import Floats
+from fuzzyq_bullet.planning.base import Flags, Floats
 from fuzzyq_bullet.planning.scan import Point
-
-Flags: TypeAlias = NDArray[np.bool_]
 
 CELL = 0.1
 """Side of a cell (m); doubled until the grid has no more than ``MOST`` cells."""
@@ -63,11 +59,11 @@ class ObstacleMap:
             self._high = _greatest(self._high, corners.max(axis=0).tolist())
 
     def forget(self, seen_through: Callable[[Floats, float], Flags]) -> None:
-        """Forget what was remembered where something was, and is not any more.
+        """Forget what is not there any more.
 
         Args:
-            seen_through: Tells which points (m), shape (K, 2), are seen to be free now: as far as a
-                ray goes, or as far as the robot's disc does (given its radius, m).
+            seen_through: Returns which points (m), shape (K, 2), are seen to be free now: by a thin
+                ray if the second argument is 0, by the robot's disc if it is its radius (m).
         """
         self._hits = self._hits[~seen_through(self._hits * GRAIN, 0.0)]
         middles = (self._ends[:2] + self._ends[2:]).T / 2.0
@@ -98,19 +94,19 @@ class ObstacleMap:
         return costs
 
     def free_cells(self, points: Sequence[Point], narrower: float) -> OccupancyGrid | None:
-        """Return a grid that holds these points (m): free is what no point that was hit closes.
+        """Return an occupancy grid of the points that rays have hit, grown by the disc.
 
-        Its cells lie where they lay before, however much of it is known by now: what was seen once
-        to be closed stays closed.
+        The grid is aligned: however much is known, its cells lie at the same places. So a cell that
+        was closed once stays closed.
 
         Args:
-            points: What lies in it at least.
-            narrower: By how many cells less than the disc must be free.
+            points: Points (m) that the grid holds.
+            narrower: How many cells narrower than the disc the free space may be.
 
         Returns:
-            None where the cells are as wide as the disc, and could tell nothing.
+            None if the cells are as wide as the disc: then the grid would be meaningless.
         """
-        grid = _free_grid(_least(self._low, *points), _greatest(self._high, *points), fixed=True)
+        grid = _free_grid(_least(self._low, *points), _greatest(self._high, *points), aligned=True)
         if self._radius <= grid.cell:
             return None
         grid.cover(self._hits * GRAIN, self._radius - narrower * grid.cell)
@@ -136,20 +132,20 @@ class ObstacleMap:
         return grid
 
 
-def _free_grid(low: Point, high: Point, *, fixed: bool = False) -> OccupancyGrid:
+def _free_grid(low: Point, high: Point, *, aligned: bool = False) -> OccupancyGrid:
     """Return a free grid over a rectangle (m) and ``MARGIN`` around it.
 
     Args:
         low: Its lower left corner.
         high: Its upper right corner.
-        fixed: Whether cells of all grids lie alike, and the origin in a corner of one.
+        aligned: Whether the origin is a corner of a cell, so that the cells of all grids coincide.
     """
     low, high = (low[0] - MARGIN, low[1] - MARGIN), (high[0] + MARGIN, high[1] + MARGIN)
     width, depth = high[0] - low[0], high[1] - low[1]
     cell = CELL
     while (width / cell + 1.0) * (depth / cell + 1.0) > MOST:
         cell *= 2.0
-    if fixed:
+    if aligned:
         low = math.floor(low[0] / cell) * cell, math.floor(low[1] / cell) * cell
     return OccupancyGrid.over(low, high, cell)
 

@@ -6,7 +6,7 @@ drives to the frontier over which the path to the goal may be the shortest. Ther
 and goes on so, with everything it has seen in its exploration graph. The routine part takes over
 when the line to the goal leads nearer to it than the robot has ever been.
 
-``docs/escape.md`` says why it ends, and what it guarantees.
+``docs/explanation/escape.md`` says why it ends, and what it guarantees.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ PATIENCE = 2.5
 slow robot."""
 BESIDE = math.radians(45.0)
 """Where the plain breakout looks which side has more room, if both need the same turn (rad)."""
-LOOK_AGAIN = 0.3
+RESCAN = 0.3
 """On its way to a frontier the robot scans again after this part of its range, or of 1 m if it sees
 less far: where it sees farther, less of what it finds is new."""
-LOOK_SOON = 0.1
-"""On an open path it scans again after this part of its range: the path is the shortest only as far
-as it has seen what stands there."""
-MOST_LOOKS = 10
-"""Once it has scanned so often from one place, it goes by frontiers: the map is wrong there."""
-AHEAD = 12
+OPEN_PATH_RESCAN = 0.1
+"""On an open path the robot scans again after this part of its range: the path is the shortest only
+among the obstacles that it has seen."""
+MOST_SCANS = 10
+"""After more scans than this from one place it drives to frontiers: the map is wrong there."""
+OPEN_PATH_SHORTCUTS = 12
 """How many points of an open path are tried for a short cut."""
 BETTER = 0.2
 """It goes for another frontier only if the way over it is shorter by so much (m)."""
@@ -60,7 +60,7 @@ class Escape:
         graph: What is known from episodes before, if anything is.
 
     Attributes:
-        moving: Points (m) of what moves now, shape (M, 2); they are not remembered.
+        moving: Points (m) of what moves now, shape (M, 2): the map leaves them out.
     """
 
     def __init__(self, *, following: bool = True, graph: ExplorationGraph | None = None) -> None:
@@ -98,7 +98,7 @@ class Escape:
         goal = towards_goal(observation)
         here, to_goal = observation.position, goal.distance
         [middle] = observation.sense([goal.bearing])
-        # Who sees farther than the paper's lines breaks out as much sooner.
+        # c_f is in S_p for the paper's range, 5·S_p; it grows with a longer range.
         sight = observation.range / USUAL_RANGE if observation.sees_far else observation.unit
         enough = min(breakout_at * sight, observation.range, to_goal)
         if to_goal < self._nearest - NEARER * observation.size:
@@ -148,14 +148,14 @@ class Escape:
         self._graph.scan(observation, self.moving)
         self._scanned_at = observation.position
         self._on_open_path = False
-        if self._graph.looks_from(observation.position) > MOST_LOOKS:
+        if self._graph.scans_from(observation.position) > MOST_SCANS:
             self._distrusts_map = True
         if observation.sees_far and not self._distrusts_map:
             path = self._graph.open_path(observation)
             if path is not None:
                 # The goal is the frontier: all between is taken for free.
                 self._frontier = Frontier(0, observation.goal, 0.0, 0.0, None)
-                self._follower = PathFollower(path, AHEAD)
+                self._follower = PathFollower(path, OPEN_PATH_SHORTCUTS)
                 self._on_open_path = True
                 return
         self._frontier, path = self._graph.best_frontier(observation) or (None, [])
@@ -184,13 +184,13 @@ class Escape:
         tried = self._frontier
         moved = math.dist(observation.position, self._scanned_at)
         if self._on_open_path:
-            if moved > LOOK_SOON * observation.range:
+            if moved > OPEN_PATH_RESCAN * observation.range:
                 self._scan(observation)
                 self._mode = "following"
         # A frontier that was given up once is not given up again: so this ends.
         elif (
             tried is not None
-            and moved > LOOK_AGAIN * max(1.0, observation.range)
+            and moved > RESCAN * max(1.0, observation.range)
             and not self._is_at(tried.point, self._left)
         ):
             self._scan_again(observation, tried)
@@ -206,11 +206,11 @@ class Escape:
         wait = towards_goal(observation)._replace(mode=self._mode, reach=0.0)
         if observation.closing_speed == 0.0:
             return wait._replace(hopeless=True)
-        self._begin_anew()  # what was in the way may have gone
+        self._reset()  # what was in the way may have moved
         return wait
 
-    def _begin_anew(self) -> None:
-        """Forget all that was explored and tried: where things move, it may have changed."""
+    def _reset(self) -> None:
+        """Forget all that was explored and tried: among moving obstacles it may be out of date."""
         judge, self._graph = self._graph.judge, ExplorationGraph()
         self._graph.judge = judge
         self._frontier, self._follower = None, PathFollower([])

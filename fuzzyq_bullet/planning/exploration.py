@@ -156,11 +156,11 @@ class ExplorationGraph:
     def scan(self, observation: Observation, moving: Floats = NO_HITS) -> None:
         """Scan all around, and add what was seen: edges, obstacles and frontiers.
 
-        Where things move, what was remembered and is not there any more is forgotten.
+        Among moving obstacles, the map forgets what the scan sees through.
 
         Args:
             observation: What is observed.
-            moving: Points (m) of what moves, shape (M, 2): they are not remembered.
+            moving: Points (m) of what moves, shape (M, 2): the map leaves them out.
         """
         here, self.size = observation.position, observation.size
         index = self._add(here)
@@ -219,17 +219,17 @@ class ExplorationGraph:
         return chosen, path[::-1]
 
     def open_path(self, observation: Observation) -> list[Point] | None:
-        """Return the shortest path (m) to the goal that what was seen leaves open.
+        """Return the shortest path (m) to the goal past the known obstacles.
 
         Returns:
-            None where it leaves none, or somebody else judges ways out.
+            None if there is none, or if a judge other than ``as_it_looks`` chooses frontiers.
         """
         if self.judge is not as_it_looks:
             return None
         return open_path(self._obstacles, observation.position, observation.goal)
 
-    def looks_from(self, here: Point) -> int:
-        """Return how many scans were made from the place where a position (m) is."""
+    def scans_from(self, here: Point) -> int:
+        """Return how many scans were made within ``NEAR`` of a position (m)."""
         near = NEAR * self.size
         return sum(math.dist(node.point, here) <= near for node in self._scanned)
 

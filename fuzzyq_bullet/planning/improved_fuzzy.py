@@ -12,7 +12,7 @@ from fuzzyq_bullet.planning.exploration import ExplorationGraph, Judge, ToGo, kn
 from fuzzyq_bullet.planning.fuzzy import Routine, Situation
 from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings, RecoverySettings
-from fuzzyq_bullet.planning.traffic import TrafficSense
+from fuzzyq_bullet.planning.traffic.avoidance import TrafficAvoidance
 
 
 class ImprovedFuzzyBase:
@@ -31,7 +31,7 @@ class ImprovedFuzzyBase:
         self._escape = Escape(following=settings.following) if settings.breakout else None
         self._guard = settings.guard
         self._breakout_at = settings.breakout_at
-        self._traffic = TrafficSense()
+        self._traffic = TrafficAvoidance()
         self.mode: Mode = "routine"
 
     def know(self, to_go: ToGo) -> None:
@@ -50,13 +50,13 @@ class ImprovedFuzzyBase:
 
     def sense(self, observation: Observation) -> Situation:
         """Choose the aim, and return what is seen towards it: the first half (Steps 4 to 9)."""
-        aim, moving = None, observation.closing_speed > 0.0
-        if moving:
+        aim, among_movers = None, observation.closing_speed > 0.0
+        if among_movers:
             self._traffic.update(observation)
         if self._escape is not None:
             self._escape.moving = self._traffic.moving
-            aim = self._escape.aim(self._traffic.patient(observation), self._breakout_at)
-        if moving:
+            aim = self._escape.aim(self._traffic.without_waiting(observation), self._breakout_at)
+        if among_movers:
             aim = self._traffic.aim(observation, aim or towards_goal(observation))
         if aim is not None:
             self.mode = aim.mode

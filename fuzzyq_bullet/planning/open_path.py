@@ -1,7 +1,8 @@
-"""The shortest path to the goal that what was seen leaves open, all that was not seen for free.
+"""The open path: the shortest path to the goal, with unknown space taken as free.
 
-A robot that sees far need not go to frontiers to look behind things: most of what stands in its way
-it sees in time. It drives along this path, and looks again before it has come far.
+A robot that sees far need not drive to frontiers, because it sees most obstacles in time. It drives
+along the open path and plans again after a short way (the free-space assumption: Koenig, Smirnov,
+Tovey 2003).
 """
 
 from __future__ import annotations
@@ -17,19 +18,19 @@ from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
 from fuzzyq_bullet.planning.scan import Point
 
 NARROWER = (0.0, 0.5)
-"""By how many cells less than the disc may be free on the path: the whole disc, or where it finds
-no path half a cell less, as the grid may be wrong about a gap."""
-STANDS = 1
-"""So many cells on each side of the robot's own are free: it stands there."""
-EVERY = 3
-"""One of so many cells of the path is a point of it."""
+"""How many cells narrower than the disc the path may be. Half a cell is tried if the whole disc has no
+path: the grid may be wrong about a gap."""
+OWN_CELLS = 1
+"""So many cells on each side of the robot's own are free, because it stands there."""
+POINT_EVERY = 3
+"""One of so many cells of the path becomes a point of it."""
 
 
 def open_path(obstacles: ObstacleMap, start: Point, goal: Point) -> list[Point] | None:
-    """Return the points (m) of the path, first the start and last the goal.
+    """Return the points (m) of the path, from the start to the goal.
 
     Returns:
-        None where what was seen leaves no path.
+        None if the known obstacles leave no path.
     """
     for narrower in NARROWER:
         grid = obstacles.free_cells((start, goal), narrower)
@@ -37,12 +38,15 @@ def open_path(obstacles: ObstacleMap, start: Point, goal: Point) -> list[Point] 
             return None
         columns, rows = grid.cells(*np.array((start, goal)).T)
         (column, goal_column), (row, goal_row) = columns.tolist(), rows.tolist()
-        beside = slice(column - STANDS, column + STANDS + 1), slice(row - STANDS, row + STANDS + 1)
+        beside = (
+            slice(column - OWN_CELLS, column + OWN_CELLS + 1),
+            slice(row - OWN_CELLS, row + OWN_CELLS + 1),
+        )
         grid.free[beside] = True
         lengths = grid.distances((goal_column, goal_row), SIXTEEN)
         if math.isfinite(lengths[column, row]):
             between = [_middle(grid, cell) for cell in _downhill(grid, lengths, (column, row))]
-            return [start, *between[EVERY - 1 : -1 : EVERY], goal]
+            return [start, *between[POINT_EVERY - 1 : -1 : POINT_EVERY], goal]
     return None
 
 
@@ -55,7 +59,7 @@ def _middle(grid: OccupancyGrid, cell: tuple[int, int]) -> Point:
 def _downhill(
     grid: OccupancyGrid, lengths: NDArray[np.float64], at: tuple[int, int]
 ) -> Iterator[tuple[int, int]]:
-    """Yield the cells of the shortest path after one cell, by the lengths of the ways from all."""
+    """Yield the cells of the shortest path after a cell, by the path lengths (m) from all cells."""
     free, moves = grid.free, [(x * side, y * side) for x, y in SIXTEEN for side in (1, -1)]
     while lengths[at] > 0.0:
         x, y = at

@@ -9,7 +9,7 @@ from fuzzyq_bullet.geometry import wrap_angle
 from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
 from fuzzyq_bullet.planning.scan import Point
 
-AHEAD = 3
+SHORTCUTS = 3
 """How many points of a path are usually tried for a short cut."""
 REACHED = 0.03
 """A point as near as this is reached (m)."""
@@ -63,12 +63,12 @@ class PathFollower:
 
     Args:
         points: Points to pass (m); each line from one to the next was driven or seen to be free.
-        ahead: How many of them are tried for a short cut.
+        shortcuts: How many of them are tried for a short cut.
     """
 
-    def __init__(self, points: list[Point], ahead: int = AHEAD) -> None:
+    def __init__(self, points: list[Point], shortcuts: int = SHORTCUTS) -> None:
         self._points = points
-        self._ahead = ahead
+        self._shortcuts = shortcuts
         self._closest = math.inf
         self._since = math.inf
 
@@ -80,7 +80,7 @@ class PathFollower:
         here, points, size = observation.position, self._points, observation.size
         while len(points) > 1 and math.dist(here, points[0]) <= REACHED * size:
             self._drop(1)
-        ahead = points[: self._ahead]
+        ahead = points[: self._shortcuts]
         lengths = [math.dist(here, point) for point in ahead]
         headings = [math.atan2(y - here[1], x - here[0]) for x, y in ahead]
         # Cast with the same batch what is asked for next: slight turns, and the robot's heading.

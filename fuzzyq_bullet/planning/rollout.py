@@ -1,4 +1,4 @@
-"""Where the robot would be in the next seconds: its turning and its acceleration simulated."""
+"""Forward simulation of the robot: its turning and acceleration over the next seconds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,12 @@ import numpy as np
 from fuzzyq_bullet.planning.base import Floats, Motion, Observation
 
 TURN_GAIN = 4.0
-"""Turn rate for an error of heading of 1 rad (1/s)."""
+"""Turn rate for a heading error of 1 rad (1/s)."""
+
+
+def angle_between(one: Floats, other: Floats | float) -> Floats:
+    """Return the turn (rad) from one direction to another, within [−π, π): ``one`` − ``other``."""
+    return np.asarray(np.remainder(one - other + math.pi, math.tau) - math.pi)
 
 
 def rollout(
@@ -23,47 +28,64 @@ def rollout(
     dt: float,
     brakes_after: Floats | float = math.inf,
 ) -> Floats:
-    """Return where the robot's centre is (m) every ``dt`` seconds, shape (S + 1, C, 2).
+    """Return the positions of the robot's centre (m) every ``dt`` seconds, shape (S + 1, C, 2).
 
-    It does what the drive does: it turns as fast as it can, drives the slower the farther it still
-    has to turn, and stops within the free length.
+    The robot is controlled as the drive does it: it turns as fast as it can, drives more slowly
+    the farther it still has to turn, and stops within the free length.
 
     Args:
-        observation: Where it is now, and how it moves.
+        observation: Where the robot is, and how it moves.
         motion: What its body can do.
-        headings: World heading (rad) that each of C attempts turns to, shape (C,).
-        speeds: Speed (m/s) that each aims for until its next decision, and that after it, each of
+        headings: World heading (rad) that each of C candidates turns to, shape (C,).
+        speeds: Speed (m/s) of each candidate until its next decision, and after it, each of
             shape (C,).
-        lengths: How far (m) each may go, shape (C,).
+        lengths: How far (m) each candidate may go, shape (C,).
         seconds: For how long.
-        dt: Time between two places (s).
-        brakes_after: When each begins to brake (s).
+        dt: Time step (s).
+        brakes_after: When each candidate begins to brake (s).
     """
     count, steps = len(headings), math.ceil(seconds / dt - 1e-9)
     x = np.full(count, observation.position[0])
     y = np.full(count, observation.position[1])
     facing = np.full(count, observation.heading)
     speed, rate = np.full(count, observation.speed), np.full(count, observation.turn_rate)
-    driven, lost = np.zeros(count), motion.acceleration * (motion.period + motion.latency)
-    places = np.empty((steps + 1, count, 2))
-    places[0] = observation.position
+    driven = np.zeros(count)
+    positions = np.empty((steps + 1, count, 2))
+    positions[0] = observation.position
     for k in range(steps):
-        if k * dt >= motion.latency - 1e-9:
-            error = np.remainder(headings - facing + math.pi, math.tau) - math.pi
-            size = np.abs(error)
-            quick = np.minimum(TURN_GAIN * size, np.sqrt(motion.turn_acceleration * size))
-            wanted_rate = np.copysign(np.minimum(quick, motion.max_turn_rate), error)
-            most = motion.turn_acceleration * dt
-            rate = rate + np.clip(wanted_rate - rate, -most, most)
-            soon = k * dt < motion.latency + motion.period - 1e-9
-            room = np.maximum(lengths - driven, 0.0)
-            stoppable = np.sqrt(lost * lost + 2.0 * motion.acceleration * room) - lost
-            wanted = (speeds[0] if soon else speeds[1]) * np.maximum(np.cos(error), 0.0)
-            wanted = np.where(k * dt < brakes_after - 1e-9, np.minimum(wanted, stoppable), 0.0)
-            most = motion.acceleration * dt
-            speed = speed + np.clip(wanted - speed, -most, most)
+        time = k * dt
+        if time >= motion.latency - 1e-9:
+            error = angle_between(headings, facing)
+            rate = _approach(rate, _wanted_rate(error, motion), motion.turn_acceleration * dt)
+            first = time < motion.latency + motion.period - 1e-9
+            aimed = (speeds[0] if first else speeds[1]) * np.maximum(np.cos(error), 0.0)
+            wanted = np.minimum(aimed, _stoppable(np.maximum(lengths - driven, 0.0), motion))
+            wanted = np.where(time < brakes_after - 1e-9, wanted, 0.0)
+            speed = _approach(speed, wanted, motion.acceleration * dt)
         facing = facing + rate * dt
         x, y = x + speed * np.cos(facing) * dt, y + speed * np.sin(facing) * dt
         driven = driven + np.abs(speed) * dt
-        places[k + 1, :, 0], places[k + 1, :, 1] = x, y
-    return places
+        positions[k + 1, :, 0], positions[k + 1, :, 1] = x, y
+    return positions
+
+
+def _approach(now: Floats, wanted: Floats, most: float) -> Floats:
+    """Return values changed towards the wanted ones, by no more than so much."""
+    return now + np.clip(wanted - now, -most, most)
+
+
+def _wanted_rate(error: Floats, motion: Motion) -> Floats:
+    """Return the turn rates (rad/s) for heading errors (rad)."""
+    size = np.abs(error)
+    quick = np.minimum(TURN_GAIN * size, np.sqrt(motion.turn_acceleration * size))
+    return np.asarray(np.copysign(np.minimum(quick, motion.max_turn_rate), error))
+
+
+def _stoppable(room: Floats, motion: Motion) -> Floats:
+    """Return the greatest speeds (m/s) that the robot can stop from within so much room (m).
+
+    With a = ``acceleration`` and T = ``period`` + ``latency``, v·T + v²/2a = room gives
+    v = √((a·T)² + 2a·room) − a·T.
+    """
+    lost = motion.acceleration * (motion.period + motion.latency)
+    return np.asarray(np.sqrt(lost * lost + 2.0 * motion.acceleration * room) - lost)

@@ -31,8 +31,8 @@ JUMP = 0.3
 ends, and what is behind it is hidden; where by less, one boundary goes on. So many times as much
 for a larger robot."""
 
-CLEARLY = 0.1
-"""What is seen through by so much (m) is not there any more."""
+CLEAR_MARGIN = 0.1
+"""A ray must reach so much farther (m) than a point to show that nothing is there any more."""
 TOUCH = 0.02
 """Whatever is no farther than this from the disc stops it (m)."""
 CLOSE = 0.005
@@ -51,9 +51,9 @@ def _around(count: int) -> tuple[Floats, NDArray[np.complex128]]:
 
 
 def ray_headings(observation: Observation) -> tuple[list[float], NDArray[np.complex128]]:
-    """Return the world headings (rad) of the thin rays of a scan, and the same as complex numbers.
+    """Return the world headings (rad) of a scan's thin rays, as a list and as complex numbers.
 
-    Whoever looks along these shares the rays with a scan at the same instant.
+    A caller that looks along these headings shares the rays with a scan at the same instant.
     """
     headings, turns = _around(MANY_RAYS if observation.sees_far else RAYS)
     return headings.tolist(), turns
@@ -92,12 +92,12 @@ class Scan:
     size: float = 1.0
 
     def sees_through(self, here: Point, points: Floats, radius: float) -> NDArray[np.bool_]:
-        """Return which points (m), shape (K, 2), are seen to be free: by some way, ``CLEARLY``.
+        """Return which points (m), shape (K, 2), the scan sees to be free, by ``CLEAR_MARGIN``.
 
         Args:
             here: Where the scan was made (m).
             points: The points.
-            radius: Whether the robot's disc, or else a thin ray (0), comes past them.
+            radius: 0 if a thin ray must pass a point; otherwise the robot's disc must.
         """
         rel = points - np.array(here)
         far, bearing = np.hypot(*rel.T), np.mod(np.arctan2(rel[:, 1], rel[:, 0]), math.tau)
@@ -111,10 +111,10 @@ class Scan:
             off = np.abs(np.remainder(bearing[:, None] - theirs + math.pi, math.tau) - math.pi)
             near = np.where(off <= 1.5 * math.tau / RAYS, reach, self.range)
             free = near.min(axis=1, initial=self.range)
-        return np.asarray(far < free - CLEARLY)
+        return np.asarray(far < free - CLEAR_MARGIN)
 
     def without(self, points: Floats) -> Scan:
-        """Return it without the boundary and the hits of what is at points (m), shape (M, 2)."""
+        """Return the scan without its boundary and hits near points (m), shape (M, 2)."""
         if not len(points):
             return self
 
@@ -125,8 +125,8 @@ class Scan:
         middles = self.boundary.reshape(-1, 2, 2).mean(axis=1)
         return replace(
             self,
-            boundary=self.boundary[away(middles, self.radius + CLEARLY)],
-            hits=self.hits[away(self.hits, CLEARLY)],
+            boundary=self.boundary[away(middles, self.radius + CLEAR_MARGIN)],
+            hits=self.hits[away(self.hits, CLEAR_MARGIN)],
         )
 
     def free(self, heading: float) -> float:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import Observation, RangeSensor
-from fuzzyq_bullet.planning.tracking import Tracker
+from fuzzyq_bullet.planning.traffic.tracker import Tracker
 from fuzzyq_bullet.scenario import Cylinder
 
 PERIOD, RANGE, WIDE = 0.05, 1.0, 0.22
@@ -94,7 +94,7 @@ def test_what_stands_is_never_told_to_move(drives, own, noise, seed):
 def test_what_has_just_come_into_sight_may_come_as_fast_as_was_said():
     traffic = Tracker().update(reading(0.0, (0.0, 0.0), [pillar(0.8, 0.0)]))
     assert len(traffic.points) > 5
-    assert traffic.speeds == pytest.approx(0.6)
+    assert traffic.max_speeds == pytest.approx(0.6)
 
 
 def test_what_moves_off_a_pillar_that_it_touches_is_told_apart_from_it():

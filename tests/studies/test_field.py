@@ -15,10 +15,10 @@ from fuzzyq_bullet.studies.episodes import OF_MACHINE, Job, Row, from_csv
 from fuzzyq_bullet.studies.escape.bounds import drive_shortest_path
 from fuzzyq_bullet.studies.escape.table import TRAPS
 from fuzzyq_bullet.studies.field.drive import Timed, drive_bound, work
-from fuzzyq_bullet.studies.field.paired import paired, shown_better
+from fuzzyq_bullet.studies.field.paired import better_table, paired
 from fuzzyq_bullet.studies.field.plan import BOUND, KINDS, FieldPlan
 from fuzzyq_bullet.studies.field.study import AgainstField
-from fuzzyq_bullet.studies.field.table import FEWEST, Line, Rows, by_kind, lines_of
+from fuzzyq_bullet.studies.field.table import FEWEST_PAIRS, Rows, Summary, by_kind, summaries_of
 from fuzzyq_bullet.studies.report.found import studies_below
 from tests.helpers.commands import SHORT, Call
 
@@ -67,8 +67,8 @@ def kinds_of(*rows: Row, others: tuple[str, ...] = ("a", "b")) -> dict[str, dict
     return by_kind(rows, [(one, one, "scatter") for one in (*others, BOUND)])
 
 
-def lines(*rows: Row) -> dict[str, Line]:
-    return {line.planner: line for line in lines_of(kinds_of(*rows), lambda row: None)}
+def lines(*rows: Row) -> dict[str, Summary]:
+    return {line.planner: line for line in summaries_of(kinds_of(*rows), lambda row: None)}
 
 
 # What is run
@@ -198,9 +198,9 @@ def test_what_others_do_better_is_told_and_only_by_enough_fields() -> None:
         ]
         return [one.better() for one in paired(kinds_of(*rows), "a")]
 
-    assert pairs(FEWEST, 15.0) == [["time"]]
-    assert pairs(FEWEST - 1, 15.0) == [[]]
-    assert pairs(FEWEST, 25.0) == [[]]
+    assert pairs(FEWEST_PAIRS, 15.0) == [["time"]]
+    assert pairs(FEWEST_PAIRS - 1, 15.0) == [[]]
+    assert pairs(FEWEST_PAIRS, 25.0) == [[]]
 
 
 def test_a_planner_that_arrives_where_the_other_does_not_is_better_in_success() -> None:
@@ -216,7 +216,7 @@ def test_a_planner_that_arrives_where_the_other_does_not_is_better_in_success() 
     (one,) = paired(kinds_of(*rows), "a")
     assert one.better() == ["success", "contacts"]
     assert one.figures["time"] is None
-    table = shown_better([one], "a")
+    table = better_table([one], "a")
     assert table is not None
     cells = [tuple(line[:3]) for line in table.rows]
     assert cells == [("scatter", "b", "success"), ("scatter", "b", "contacts")]

@@ -1,4 +1,4 @@
-"""How an episode of ``bench field`` is driven in a worker: by its planner, with a watch on it."""
+"""How a worker drives an episode of ``bench field``: its decisions are timed."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from fuzzyq_bullet.trajectory import Trajectory
 
 
 class Timed:
-    """A planner with a watch on it: every ray that it asks for is cast while the watch runs.
+    """A planner whose decisions are timed, the rays that it asks for included.
 
     Args:
         planner: The planner.
-        seconds: Gets the time of each decision (s).
-        clock: The watch (s). That of the processor does not count what other processes take from
-            this one, nor the work of a planner that is a program of its own.
+        seconds: The time of each decision (s) is appended to it.
+        clock: The clock (s). Processor time leaves out other processes, but also a planner that is
+            a program of its own.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class Timed:
         seconds: list[float],
         clock: Callable[[], float] = time.process_time,
     ) -> None:
-        @wraps(planner.decide)  # a mistake of the planner's is told with the planner's own line
+        @wraps(planner.decide)  # an error names the planner's own line
         def decide(observation: Observation, /) -> Any:
             began = clock()
             decided = planner.decide(observation)
@@ -58,9 +58,9 @@ def drive_timed(scenario: Scenario, seconds: list[float]) -> Trajectory:
 
 
 def drive_bound(scenario: Scenario) -> Trajectory:
-    """Drive the shortest path of a realised scenario, of which only what stands is left.
+    """Drive the shortest path of a realised scenario, without moving obstacles.
 
-    Nothing comes in its way, and it sees, knows its place and moves as it should.
+    Sensor, position and wheels are undisturbed.
     """
     robot = scenario.robot.model_copy(update={"slip": 0.0, "latency": 0.0})
     sensor = ExactSensor(range=scenario.sensor_range)
@@ -69,7 +69,7 @@ def drive_bound(scenario: Scenario) -> Trajectory:
 
 
 def work(order: dict[str, Any]) -> dict[str, Any]:
-    """Do a job of the study in a worker process; records are left behind, planners fail often."""
+    """Do a job of the study in a worker process, and return its row."""
     job = Job.of_order(order)
     if job.planner.split(".")[0] == BOUND:
         return answer(Done(run_job(job, drive_bound).row))

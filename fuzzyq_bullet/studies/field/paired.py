@@ -1,4 +1,4 @@
-"""One planner beside each other one in the same fields, with intervals; and who does better."""
+"""Paired comparisons: a planner against another one in the same fields, with intervals."""
 
 from __future__ import annotations
 
@@ -10,19 +10,25 @@ import numpy as np
 
 from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.field.plan import BOUND
-from fuzzyq_bullet.studies.field.table import FEWEST, Rows, in_both, told, turning_of
+from fuzzyq_bullet.studies.field.table import (
+    FEWEST_PAIRS,
+    Rows,
+    estimate_cell,
+    paired_figures,
+    turning_of,
+)
 from fuzzyq_bullet.studies.statistics import Estimate, difference_of_shares, ratio_of_means
 from fuzzyq_bullet.studies.study import Table
 
 
 class Measure(NamedTuple):
-    """A figure that is compared.
+    """A figure by which planners are compared.
 
     Attributes:
-        figure: It, of a run; of a share 1 or 0.
-        share: Whether it is a share, of which the difference is told; else the ratio.
+        figure: Returns the figure of a run; for a share 1 or 0.
+        share: Whether it is a share. Shares are compared by their difference, others by their ratio.
         more: Whether more is better.
-        solved: Whether only fields count that both solved.
+        solved: Whether only the fields count that both planners solved.
     """
 
     figure: Callable[[Row], float | None]
@@ -52,14 +58,14 @@ _SHOWN = tuple(name for name in MEASURES if name != "contacts")
 
 @dataclass(frozen=True)
 class Paired:
-    """One planner beside the one that all are compared with, in one kind of fields.
+    """One planner against the reference planner, in one kind of fields.
 
     Attributes:
         kind: The kind.
         planner: Name of the planner.
-        than: Name of the other.
-        figures: Its figures less the other's (shares), or over the other's, by name of the measure;
-            None where there is nothing to compare.
+        than: Name of the reference planner.
+        figures: By name of the measure: its share − the reference's, or its figure ÷ the
+            reference's. None if there is nothing to compare.
     """
 
     kind: str
@@ -68,7 +74,7 @@ class Paired:
     figures: Mapping[str, Estimate | None]
 
     def better(self) -> list[str]:
-        """Return the measures in which it does better, by an interval that leaves out chance."""
+        """Return the measures in which it is better, by an interval that excludes "equal"."""
         return [
             name
             for name, one in self.figures.items()
@@ -77,7 +83,7 @@ class Paired:
 
 
 def paired(kinds: Mapping[str, Mapping[str, Rows]], than: str) -> list[Paired]:
-    """Return every planner, but for the bound, beside one of them."""
+    """Return every planner except the bound against a reference planner."""
     return [
         Paired(
             kind,
@@ -92,7 +98,7 @@ def paired(kinds: Mapping[str, Mapping[str, Rows]], than: str) -> list[Paired]:
 
 
 def _compared(measure: Measure, ours: Rows, theirs: Rows) -> Estimate | None:
-    one, two = in_both(ours, theirs, measure.figure, solved=measure.solved)
+    one, two = paired_figures(ours, theirs, measure.figure, solved=measure.solved)
     if measure.share:
         return difference_of_shares([value > 0.5 for value in one], [value > 0.5 for value in two])
     return ratio_of_means(one, two, np.random.default_rng(0))
@@ -100,24 +106,24 @@ def _compared(measure: Measure, ours: Rows, theirs: Rows) -> Estimate | None:
 
 def _is_better(measure: Measure, one: Estimate) -> bool:
     even = 0.0 if measure.share else 1.0
-    if one.pairs < FEWEST:
+    if one.pairs < FEWEST_PAIRS:
         return False
     return one.low > even if measure.more else one.high < even
 
 
-def shown_better(pairs: Sequence[Paired], than: str) -> Table | None:
-    """Return what others do better than a planner, which is what a reader should see first.
+def better_table(pairs: Sequence[Paired], than: str) -> Table | None:
+    """Return the table of what others do better than a planner: a reader should see it first.
 
     Returns:
-        None if there are too few fields to say so of anything.
+        None if no comparison has enough fields for an interval.
     """
     rows = [
-        [one.kind, one.planner, name, told(one.figures[name], form_of(name))]
+        [one.kind, one.planner, name, estimate_cell(one.figures[name], form_of(name))]
         for one in pairs
         for name in one.better()
     ]
     count = sum(
-        figure is not None and figure.pairs >= FEWEST
+        figure is not None and figure.pairs >= FEWEST_PAIRS
         for one in pairs
         for figure in one.figures.values()
     )
@@ -132,7 +138,7 @@ def shown_better(pairs: Sequence[Paired], than: str) -> Table | None:
     return Table(caption, heads, rows or [["nothing", "–", "–", "–"]], left=(0, 1, 2))
 
 
-def shown_paired(pairs: Sequence[Paired], than: str) -> Table:
+def paired_table(pairs: Sequence[Paired], than: str) -> Table:
     """Return the comparisons as a table."""
     groups: dict[str, list[Paired]] = {}
     for one in pairs:
@@ -142,15 +148,15 @@ def shown_paired(pairs: Sequence[Paired], than: str) -> Table:
             kind,
             "\n".join(one.planner for one in group),
             *(
-                "\n".join(told(one.figures[name], form_of(name)) for one in group)
+                "\n".join(estimate_cell(one.figures[name], form_of(name)) for one in group)
                 for name in _SHOWN
             ),
         ]
         for kind, group in groups.items()
     ]
     caption = (
-        f"Each beside {than} in the same fields [95 %, of {FEWEST} and more]. success: share less "
-        f"that of {than}, exact interval; the rest over that of {than}, bootstrapped over fields: "
+        f"Each beside {than} in the same fields [95 %, of {FEWEST_PAIRS} and more]. success: share "
+        f"less that of {than}, exact interval; the rest over that of {than}, bootstrapped over fields: "
         "time, path, turning and jerk in those that both solved, the median time of a decision in "
         "all."
     )

@@ -10,7 +10,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, PercentFormatter
 
 from fuzzyq_bullet.figures.style import BLUE, GREY, INK, RED, new_figure, plain, tidy
 from fuzzyq_bullet.studies.field.plan import BOUND
-from fuzzyq_bullet.studies.field.table import FEWEST, Line
+from fuzzyq_bullet.studies.field.table import FEWEST_PAIRS, Summary
 from fuzzyq_bullet.studies.options import PAPER
 
 _LOOKS = ((PAPER, (BLUE, "o")), ((BOUND,), (INK, "D")))
@@ -20,7 +20,7 @@ _MOST = 4.0
 """Least and greatest time over the bound that are drawn to scale; the rest stands at the edge."""
 
 
-def field_picture(lines: Sequence[Line], about: str) -> Figure:
+def field_picture(lines: Sequence[Summary], about: str) -> Figure:
     """Return the figure: a column for each kind, a line for each planner, named at the left."""
     kinds = list(dict.fromkeys(line.kind for line in lines))
     planners = list(dict.fromkeys(line.planner for line in lines))
@@ -30,7 +30,7 @@ def field_picture(lines: Sequence[Line], about: str) -> Figure:
     figure.suptitle(f"Planners in the same fields: {about}", fontsize=12, weight="bold", color=INK)
     figure.supxlabel(
         "circle: the paper's; square: others; diamond: the bound.\n"
-        f"Lines: 95 %, of a time where both solved {FEWEST} fields or more.",
+        f"Lines: 95 %, of a time where both solved {FEWEST_PAIRS} fields or more.",
         fontsize=9, color=INK,
     )  # fmt: skip
     axes = figure.subplots(3 if scored else 2, len(kinds), sharey=True, squeeze=False)
@@ -71,7 +71,7 @@ def _look(planner: str) -> tuple[str, str]:
     return next((look for names, look in _LOOKS if planner in names), _OTHERS)
 
 
-def _success(axes: Axes, line: Line, place: int) -> None:
+def _success(axes: Axes, line: Summary, place: int) -> None:
     """Draw the share with its interval; contacts stand at the right."""
     colour, mark = _look(line.planner)
     if line.success is None:
@@ -84,7 +84,7 @@ def _success(axes: Axes, line: Line, place: int) -> None:
         axes.annotate(words, (1.59, place), va="center", ha="right", fontsize=7, color=INK)
 
 
-def _time(axes: Axes, line: Line, place: int) -> None:
+def _time(axes: Axes, line: Summary, place: int) -> None:
     colour, mark = _look(line.planner)
     if line.planner == BOUND:
         axes.plot(1.0, place, mark, color=colour, ms=6)
@@ -94,7 +94,7 @@ def _time(axes: Axes, line: Line, place: int) -> None:
         return
     value = line.over_bound.value
     low = high = max(value, _LEAST)
-    if line.over_bound.pairs >= FEWEST:
+    if line.over_bound.pairs >= FEWEST_PAIRS:
         low, high = max(line.over_bound.low, _LEAST), line.over_bound.high
     axes.plot([min(low, _MOST), min(high, _MOST)], [place, place], color=colour, lw=1.5)
     axes.plot(
@@ -106,7 +106,7 @@ def _time(axes: Axes, line: Line, place: int) -> None:
     )  # fmt: skip
 
 
-def _score(axes: Axes, line: Line, place: int) -> None:
+def _score(axes: Axes, line: Summary, place: int) -> None:
     colour, mark = _look(line.planner)
     if line.score is None:
         return

@@ -22,10 +22,10 @@ BOUND = "true-path"
 """What rows call the bound: it knows the field, and drives its shortest path."""
 WORLDS = "worlds"
 """The kind of worlds that were read from files."""
-CIRCLES = Limits(time=240.0, steps=100_000)
-"""Ten times what the bound takes: who has not arrived by then goes in circles."""
+FIELD_LIMITS = Limits(time=240.0, steps=100_000)
+"""Ten times what the bound takes: a planner that has not arrived by then goes in circles."""
 _USUAL_LEVEL = 2
-"""Place on the scales of ``bench robust``."""
+"""Strength of the disturbances, on the scales of ``bench robust``."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +33,9 @@ class Kind:
     """A kind of fields.
 
     Attributes:
-        layouts: Of which layouts; fields take them in turn.
+        layouts: Its layouts; fields take them in turn.
         count: Number of obstacles; None for layouts that have no count.
-        changes: What is otherwise than usual: keys of ``Outfit``.
+        changes: Keys of ``Outfit`` that differ from the default.
     """
 
     layouts: tuple[str, ...]
@@ -61,16 +61,16 @@ class FieldPlan(Plan):
         planners: The settings of each, by its name.
         kinds: Names of ``KINDS``.
         runs: Fields of each kind.
-        seed: Of the sweep.
+        seed: Seed of the sweep.
         limits: When an episode is given up.
-        outfit: What drives instead of the fields' own robot.
+        outfit: Changes to the robot and sensor of the fields.
     """
 
     planners: dict[str, PlannerDescription] = Field(min_length=1)
     kinds: tuple[str, ...] = Field(min_length=1)
     runs: Number
     seed: Seed = 0
-    limits: Limits = CIRCLES
+    limits: Limits = FIELD_LIMITS
     outfit: Outfit = USUAL
 
     def labels(self) -> Iterator[Label]:
@@ -107,10 +107,10 @@ class FieldPlan(Plan):
 
 
 class World(BaseModel):
-    """A world as a plan tells it.
+    """What a plan records of a world.
 
     Attributes:
-        sha256: Of all that is driven through: another start is another world.
+        sha256: Digest of the whole scenario: with another start it is another world.
         seed: Of its first run.
         goal_radius: Radius of its goal (m).
     """
@@ -131,8 +131,8 @@ class WorldsPlan(Plan):
         repeat: Runs of each, with seeds that count up.
         asked: What was asked for, by option: the folder, start, goal, robot.
         unread: A line for every file of the folder that could not be read.
-        contents: The worlds themselves as JSON, by name; not what the plan says of itself, and not
-            there when it is read back.
+        contents: The worlds themselves as JSON, by name. They are not written with the plan, and are
+            empty when it is read back.
     """
 
     planners: dict[str, PlannerDescription] = Field(min_length=1)

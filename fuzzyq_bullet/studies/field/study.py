@@ -14,10 +14,10 @@ from fuzzyq_bullet.planning import PlannerSettings, settings_for
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER
 from fuzzyq_bullet.studies.episodes import Row
 from fuzzyq_bullet.studies.escape.table import literature_score, score_of
-from fuzzyq_bullet.studies.field.paired import paired, shown_better, shown_paired
+from fuzzyq_bullet.studies.field.paired import better_table, paired, paired_table
 from fuzzyq_bullet.studies.field.plan import BOUND, KINDS, WORLDS, FieldPlan, WorldsPlan
-from fuzzyq_bullet.studies.field.table import by_kind, lines_of, shown, shown_worlds
-from fuzzyq_bullet.studies.field.worlds import Asked, Found, worlds_in
+from fuzzyq_bullet.studies.field.table import by_kind, summaries_of, summary_table, worlds_table
+from fuzzyq_bullet.studies.field.worlds import WorldFolder, WorldOptions, worlds_in
 from fuzzyq_bullet.studies.options import PAPER, described, outfit_with, planners_of
 from fuzzyq_bullet.studies.plan import Plan
 from fuzzyq_bullet.studies.registry import register_study
@@ -27,7 +27,7 @@ from fuzzyq_bullet.wording import not_one_of
 PEERS = ("dwa", "vfh", "apf", "tangent-bug")
 """Planners of the field that come with the package and need nothing else."""
 FEW_WORLDS = 40
-"""So many worlds are printed one by one; of more a report tells."""
+"""Up to so many worlds are printed one by one; more are only in the report."""
 
 
 @register_study
@@ -70,7 +70,7 @@ class AgainstField(Study):
     drive: str = Field("wheels", description="wheels: the point robot has no time to compare.")
 
     def planner_set(self) -> dict[str, PlannerSettings]:
-        """Return those that are compared, and the bound, which has settings for form's sake."""
+        """Return the planners, and the bound, whose settings are not used."""
         usual = settings_for(DEFAULT_PLANNER).model_validate({"name": DEFAULT_PLANNER})
         return {**planners_of(self.planners), BOUND: usual}
 
@@ -104,10 +104,10 @@ class AgainstField(Study):
             outfit=outfit_with(self.robot, self.max_speed, self.range),
         )
 
-    def _asked(self, folder: Path) -> Asked:
-        return Asked(folder, self.start, self.goal, self.robot, self.max_speed, self.range)
+    def _asked(self, folder: Path) -> WorldOptions:
+        return WorldOptions(folder, self.start, self.goal, self.robot, self.max_speed, self.range)
 
-    def _worlds(self, planners: Mapping[str, Any], found: Found) -> WorldsPlan:
+    def _worlds(self, planners: Mapping[str, Any], found: WorldFolder) -> WorldsPlan:
         options = ("worlds", "start", "goal", "robot", "max_speed", "range")
         asked = {name: getattr(self, name) for name in options}
         return WorldsPlan(
@@ -133,18 +133,18 @@ class AgainstField(Study):
 
     @classmethod
     def usable(cls, results: Results) -> Results | None:
-        """Return all there is, if there is a field that every planner has met."""
+        """Return the results if there is a field that every planner has driven through."""
         (swept,) = results.values()
         return results if by_kind(swept.rows, swept.plan.labels()) else None
 
     def work(self) -> Work:
-        """Return what does a job: with a watch on the planner; the bound knows the truth."""
+        """Return the function that does a job in a worker."""
         from fuzzyq_bullet.studies.field.drive import work
 
         return work
 
     def findings(self, results: Results) -> Findings:
-        """Return what others do better, the table, and each planner beside the default one."""
+        """Return what others do better, the main table, and the paired comparisons."""
         from fuzzyq_bullet.studies.field.picture import field_picture
 
         (swept,) = results.values()
@@ -152,13 +152,13 @@ class AgainstField(Study):
         kinds = by_kind(swept.rows, plan.labels())
         than = DEFAULT_PLANNER if DEFAULT_PLANNER in plan.planners else next(iter(plan.planners))
         score = score_of if isinstance(plan, FieldPlan) else _score_in(plan)
-        lines, pairs = lines_of(kinds, score), paired(kinds, than)
+        lines, pairs = summaries_of(kinds, score), paired(kinds, than)
         about = f"wheels; seed {plan.seed}" if isinstance(plan, FieldPlan) else "wheels"
-        better = shown_better(pairs, than)
-        tables = [*([better] if better else []), shown(lines, about)]
+        better = better_table(pairs, than)
+        tables = [*([better] if better else []), summary_table(lines, about)]
         if pairs:
-            tables.append(shown_paired(pairs, than))
-        each = (shown_worlds(kinds[WORLDS], score),) if WORLDS in kinds else ()
+            tables.append(paired_table(pairs, than))
+        each = (worlds_table(kinds[WORLDS], score),) if WORLDS in kinds else ()
         few = len(getattr(plan, "worlds", ())) <= FEW_WORLDS
         data = {
             "settings": dict(swept.settings),

@@ -18,26 +18,26 @@ Score: TypeAlias = Callable[[Row], float | None]
 """The score of the literature of a run; None where there is none."""
 Rows: TypeAlias = Mapping[Place, Row]
 """The rows of one planner in one kind of fields."""
-FEWEST = 6
-"""Pairs below which no interval is told: even if all of five differ to one side, that is chance in
-6 % of cases; a bootstrap of so few claims to know more."""
+FEWEST_PAIRS = 6
+"""With fewer pairs no interval is given: five of five differences to the same side are chance in 6 %
+of cases, and a bootstrap of so few claims to know more."""
 
 
 @dataclass(frozen=True)
-class Line:
+class Summary:
     """One planner in one kind of fields. All means are over the runs that reached the goal.
 
     Attributes:
         kind: The kind.
         planner: Name of the planner.
-        fields: Fields that it has met.
-        success: Share of those with a way in which it reached the goal. Where an error left unknown
-            whether there is one, there is: an error excuses nothing.
+        fields: Number of fields that it has driven through.
+        success: Share of the feasible fields in which it reached the goal. A field counts as feasible
+            if an error left that unknown.
         contacts: Runs in all fields that ended in a contact.
-        at_fault: Those of them for which the robot was at fault.
-        errors: Runs that failed themselves.
-        over_bound: Its time over that of the bound, over the fields that both solved.
-        path: Mean of driven over shortest path.
+        at_fault: Contacts for which the robot was at fault.
+        errors: Runs that an error ended.
+        over_bound: Its time ÷ that of the bound, in the fields that both solved.
+        path: Mean of driven ÷ shortest path.
         turning: Mean of the turning per metre (rad/m).
         jerk: Mean of |jerk| (m/s³).
         decision_ms: Median over all runs of their median time of a decision (ms).
@@ -62,9 +62,9 @@ class Line:
 
 
 def by_kind(rows: Iterable[Row], labels: Iterable[Label]) -> dict[str, dict[str, Rows]]:
-    """Return rows by kind, planner and field: fields that every planner has met.
+    """Return rows by kind, planner and field, of the fields that every planner has driven through.
 
-    So nobody looks better in a sweep that is not finished because it has met the easy ones.
+    Otherwise a planner would look better in an unfinished sweep that began with the easy fields.
     """
     by_label: dict[str, dict[Place, Row]] = {}
     for row in rows:
@@ -82,22 +82,22 @@ def by_kind(rows: Iterable[Row], labels: Iterable[Label]) -> dict[str, dict[str,
     }
 
 
-def lines_of(kinds: Mapping[str, Mapping[str, Rows]], score: Score) -> list[Line]:
-    """Return a line for each planner in each kind, in the order of the table."""
+def summaries_of(kinds: Mapping[str, Mapping[str, Rows]], score: Score) -> list[Summary]:
+    """Return the summary of each planner in each kind, in the order of the table."""
     return [
-        _line(kind, planner, met, group[BOUND], score)
+        _summary(kind, planner, met, group[BOUND], score)
         for kind, group in kinds.items()
         for planner, met in group.items()
     ]
 
 
-def _line(kind: str, planner: str, met: Rows, bound: Rows, score: Score) -> Line:
+def _summary(kind: str, planner: str, met: Rows, bound: Rows, score: Score) -> Summary:
     rows = list(met.values())
     feasible = [row for row in rows if row.feasible is not False]
     solved = [row for row in rows if row.success]
     hit = [row for row in rows if row.collisions]
-    times = in_both(met, bound, lambda row: row.time_s)
-    return Line(
+    times = paired_figures(met, bound, lambda row: row.time_s)
+    return Summary(
         kind=kind,
         planner=planner,
         fields=len(rows),
@@ -115,10 +115,10 @@ def _line(kind: str, planner: str, met: Rows, bound: Rows, score: Score) -> Line
     )
 
 
-def in_both(
+def paired_figures(
     ours: Rows, theirs: Rows, figure: Callable[[Row], float | None], *, solved: bool = True
 ) -> tuple[list[float], list[float]]:
-    """Return a figure of both in the same fields: those that both solved, and have it in."""
+    """Return a figure of both planners in the fields where both have it, and solved them."""
     pairs = [
         (one, two)
         for place, row in ours.items()
@@ -137,9 +137,9 @@ def turning_of(row: Row) -> float | None:
     return row.turning_rad / row.path_length_m
 
 
-def told(one: Estimate | None, form: str) -> str:
-    """Return an estimate as a cell; without its interval where that would be of too few pairs."""
-    return cell(one if one is None or one.pairs >= FEWEST else one.value, form)
+def estimate_cell(one: Estimate | None, form: str) -> str:
+    """Return an estimate as a cell; without its interval if there are too few pairs."""
+    return cell(one if one is None or one.pairs >= FEWEST_PAIRS else one.value, form)
 
 
 def _known(figure: Callable[[list[float]], float], values: Iterable[float | None]) -> float | None:
@@ -147,13 +147,13 @@ def _known(figure: Callable[[list[float]], float], values: Iterable[float | None
     return figure(known) if known else None
 
 
-_COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
+_COLUMNS: tuple[tuple[str, Callable[[Summary], str]], ...] = (
     ("planner", lambda line: line.planner),
     ("reached", lambda line: cell(line.success and f"{line.success.number} of {line.success.of}")),
     ("95 %", lambda line: cell(line.success and f"{line.success.low:.2f}–{line.success.high:.2f}")),
     ("contacts", lambda line: str(line.contacts)),
     ("at fault", lambda line: str(line.at_fault)),
-    ("time ÷ bound", lambda line: told(line.over_bound, ".2f")),
+    ("time ÷ bound", lambda line: estimate_cell(line.over_bound, ".2f")),
     ("path ratio", lambda line: cell(line.path, ".2f")),
     ("rad/m", lambda line: cell(line.turning, ".2f")),
     ("jerk m/s³", lambda line: cell(line.jerk, ".2f")),
@@ -163,10 +163,10 @@ _COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
 )
 
 
-def shown(lines: Sequence[Line], about: str) -> Table:
-    """Return the lines as a table; without the score where nothing has one."""
+def summary_table(lines: Sequence[Summary], about: str) -> Table:
+    """Return the main table; without the score if no run has one."""
     columns = [one for one in _COLUMNS if one[0] != "score" or any(x.score for x in lines)]
-    groups: dict[str, list[Line]] = {}
+    groups: dict[str, list[Summary]] = {}
     for line in lines:
         groups.setdefault(f"{line.kind}\n({line.fields})", []).append(line)
     rows = [
@@ -184,15 +184,15 @@ def shown(lines: Sequence[Line], about: str) -> Table:
         "nothing disturbed.\n"
         "reached: of the fields that have a way, with Wilson's interval; contacts: in all fields; "
         "at fault: contacts at which the robot moved. Of the runs that reached the goal: time over "
-        f"that of the bound, in the fields that both solved [95 %, of {FEWEST} and more]; driven "
-        "over shortest path; smoothness as changes of direction for each metre (rad/m), and as the "
+        f"that of the bound, in the fields that both solved [95 %, of {FEWEST_PAIRS} and more]; "
+        "driven over shortest path; smoothness as changes of direction for each metre (rad/m), and as the "
         "mean of |jerk|. decision: processor time, its rays included: median, and what 95 % stay "
         f"below{scored}."
     )
     return Table(caption, ("fields", *(name for name, _ in columns)), rows, left=(0, 1))
 
 
-def shown_worlds(worlds: Mapping[str, Rows], score: Score) -> Table:
+def worlds_table(worlds: Mapping[str, Rows], score: Score) -> Table:
     """Return the scores in each world, by planner.
 
     Args:

@@ -1,6 +1,6 @@
 """The worlds of a folder for ``bench field --worlds``: scenario files, and maps of other programs.
 
-What is wrong with one file does not keep the others from being driven through.
+A file that cannot be read is a problem of its own; the others are used.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from fuzzyq_bullet.studies.options import outfit_with
 from fuzzyq_bullet.untrusted import number
 
 _PICTURES = (".png", ".pgm", ".bmp")
-"""Parts of ROS maps. By itself a picture has no size."""
+"""Pictures belong to ROS maps; a picture alone has no size."""
 _UNUSED = {"planner", "drive", "expect", "description"}
-"""What of a scenario the study chooses itself, or does not look at."""
+"""Keys of a scenario that the study sets itself or ignores."""
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is asked of all worlds of a folder.
+class WorldOptions:
+    """The options that count for all worlds of a folder.
 
     Attributes:
         folder: The folder.
@@ -46,14 +46,14 @@ class Asked:
 
 
 @dataclass
-class Found:
-    """What a folder holds.
+class WorldFolder:
+    """The worlds of a folder.
 
     Attributes:
         worlds: Its worlds by name, in the order of their files.
-        contents: The same, whole, as JSON.
-        problems: A line for every mistake of a file that could not be read.
-        left_out: In how many worlds each kind of thing was left out.
+        contents: The same worlds in full, as JSON.
+        problems: A line for every mistake in a file that could not be read.
+        left_out: Number of worlds from which the import left out each kind of thing.
     """
 
     worlds: dict[str, World] = field(default_factory=dict)
@@ -62,7 +62,7 @@ class Found:
     left_out: dict[str, int] = field(default_factory=dict)
 
 
-def worlds_in(asked: Asked) -> Found:
+def worlds_in(asked: WorldOptions) -> WorldFolder:
     """Read all worlds of a folder, sorted by the names of their files.
 
     Raises:
@@ -70,7 +70,7 @@ def worlds_in(asked: Asked) -> Found:
     """
     options, radius = _options(asked)
     options.robot_model()  # or every world would complain
-    found = Found()
+    found = WorldFolder()
     files: dict[str, Path] = {}
     for path in _files(asked.folder):
         try:
@@ -97,12 +97,12 @@ def worlds_in(asked: Asked) -> Found:
 
 
 def _placed(line: str, path: Path) -> str:
-    """Return a mistake with the file that it is in: not all that read a world know it."""
+    """Return a mistake with its file: not every importer names it."""
     return line if line.startswith(str(path)) else f"{path}: {line}"
 
 
-def _options(asked: Asked) -> tuple[ImportOptions, float | None]:
-    """Return what is asked of an import, and the radius of the goal, if that is asked for (m)."""
+def _options(asked: WorldOptions) -> tuple[ImportOptions, float | None]:
+    """Return the options of an import, and the radius of the goal (m), if it is given."""
     goal, radius = asked.goal, None
     if goal is not None and goal.count(",") == 2:
         goal, _, last = goal.rpartition(",")
@@ -115,7 +115,7 @@ def _files(folder: Path) -> Iterable[Path]:
     """Return the files of a folder that may be worlds, sorted.
 
     Raises:
-        UserError: If there is none, or the folder cannot be read.
+        UserError: If there are none, or the folder cannot be read.
     """
     try:
         every = sorted(path for path in folder.iterdir() if not path.name.startswith("."))
@@ -131,7 +131,7 @@ def _files(folder: Path) -> Iterable[Path]:
     return files
 
 
-def _equipped(world: Scenario, asked: Asked, radius: float | None) -> Scenario:
+def _equipped(world: Scenario, asked: WorldOptions, radius: float | None) -> Scenario:
     """Return a world with the goal and the robot that are asked for.
 
     Raises:
