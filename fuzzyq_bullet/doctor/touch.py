@@ -22,9 +22,8 @@ MOST_POSES = 800
 _GRID = 2.0
 """Neighbouring poses are at least so far apart, in radii of the robot."""
 UNSEEN = WIDEST / 2 + 0.01
-"""How deep (m) the body may be inside an obstacle that the sensor did not see. A right-angled corner
-between two rays is in the body by half their distance before a ray meets it. Solids may be 1 mm
-off."""
+"""How deep (m) the body may be in an obstacle that the sensor did not see. A right angle between
+two rays is inside the body by half their distance before a ray meets it. Solids are 1 mm off."""
 _FELT = 0.005
 """A solid is no farther than this from the end of a ray (m)."""
 _LINES = 6

@@ -18,8 +18,8 @@ from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
 from fuzzyq_bullet.planning.scan import Point
 
 NARROWER = (0.0, 0.5)
-"""How many cells narrower than the disc the path may be. Half a cell is tried if the whole disc has no
-path: the grid may be wrong about a gap."""
+"""How many cells narrower than the disc the path may be. Half a cell is tried if there is no path
+otherwise: the grid may be wrong about a gap."""
 OWN_CELLS = 1
 """So many cells on each side of the robot's own are free, because it stands there."""
 POINT_EVERY = 3

@@ -26,7 +26,7 @@ class Measure(NamedTuple):
 
     Attributes:
         figure: Returns the figure of a run; for a share 1 or 0.
-        share: Whether it is a share. Shares are compared by their difference, others by their ratio.
+        share: Whether it is a share: then its difference is given, otherwise its ratio.
         more: Whether more is better.
         solved: Whether only the fields count that both planners solved.
     """
@@ -156,9 +156,9 @@ def paired_table(pairs: Sequence[Paired], than: str) -> Table:
     ]
     caption = (
         f"Each beside {than} in the same fields [95 %, of {FEWEST_PAIRS} and more]. success: share "
-        f"less that of {than}, exact interval; the rest over that of {than}, bootstrapped over fields: "
-        "time, path, turning and jerk in those that both solved, the median time of a decision in "
-        "all."
+        f"less that of {than}, exact interval; the rest over that of {than}, bootstrapped over "
+        "fields: time, path, turning and jerk in those that both solved, the median time of a "
+        "decision in all."
     )
     return Table(caption, ("fields", "planner", *_SHOWN), rows, left=(0, 1))
 

@@ -131,8 +131,8 @@ class WorldsPlan(Plan):
         repeat: Runs of each, with seeds that count up.
         asked: What was asked for, by option: the folder, start, goal, robot.
         unread: A line for every file of the folder that could not be read.
-        contents: The worlds themselves as JSON, by name. They are not written with the plan, and are
-            empty when it is read back.
+        contents: The worlds themselves as JSON, by name. They are not written with the plan, so a
+            plan that is read back has none.
     """
 
     planners: dict[str, PlannerDescription] = Field(min_length=1)

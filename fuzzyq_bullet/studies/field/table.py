@@ -19,8 +19,8 @@ Score: TypeAlias = Callable[[Row], float | None]
 Rows: TypeAlias = Mapping[Place, Row]
 """The rows of one planner in one kind of fields."""
 FEWEST_PAIRS = 6
-"""With fewer pairs no interval is given: five of five differences to the same side are chance in 6 %
-of cases, and a bootstrap of so few claims to know more."""
+"""With fewer pairs no interval is given: five of five differences to the same side are chance in
+6 % of cases, and a bootstrap of so few claims to know more."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class Summary:
         kind: The kind.
         planner: Name of the planner.
         fields: Number of fields that it has driven through.
-        success: Share of the feasible fields in which it reached the goal. A field counts as feasible
-            if an error left that unknown.
+        success: Share of the feasible fields in which it reached the goal. If an error left it
+            unknown whether a field is feasible, it counts.
         contacts: Runs in all fields that ended in a contact.
         at_fault: Contacts for which the robot was at fault.
         errors: Runs that an error ended.
@@ -185,9 +185,9 @@ def summary_table(lines: Sequence[Summary], about: str) -> Table:
         "reached: of the fields that have a way, with Wilson's interval; contacts: in all fields; "
         "at fault: contacts at which the robot moved. Of the runs that reached the goal: time over "
         f"that of the bound, in the fields that both solved [95 %, of {FEWEST_PAIRS} and more]; "
-        "driven over shortest path; smoothness as changes of direction for each metre (rad/m), and as the "
-        "mean of |jerk|. decision: processor time, its rays included: median, and what 95 % stay "
-        f"below{scored}."
+        "driven over shortest path; smoothness as changes of direction for each metre (rad/m), and "
+        "as the mean of |jerk|. decision: processor time, its rays included: median, and what 95 % "
+        f"stay below{scored}."
     )
     return Table(caption, ("fields", *(name for name, _ in columns)), rows, left=(0, 1))
 
