@@ -234,7 +234,7 @@ def test_an_engine_is_closed_once_and_for_all():
 
 
 def test_worlds_that_are_closed_leave_no_memory_behind():
-    # PyBullet keeps the lists that it is given of a mesh: 1600 corners would be 3200 blocks a world.
+    # PyBullet keeps the lists of a mesh: with 1600 corners 3200 blocks a world.
     many = [cylinder(0.6 + 0.5 * (k % 10), 0.6 + 0.5 * (k // 10), 0.1) for k in range(50)]
 
     def blocks_after(worlds):
