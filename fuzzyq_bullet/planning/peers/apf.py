@@ -21,7 +21,7 @@ heading, its size up to 1 the part of the greatest speed. Left out: Khatib's dam
 which the velocity controller of the wheels has. Known to remain: passages between obstacles that
 repel each other's side, and oscillation in narrow corridors (Koren and Borenstein 1991).
 
-Tuning (docs/explanation/peers.md): the best of 8 settings on 12 training fields.
+Tuning (docs/results/peers.md): the best of 8 settings on 12 training fields.
 """
 
 from __future__ import annotations

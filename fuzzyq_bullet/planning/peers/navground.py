@@ -17,7 +17,7 @@ still has no say in ORCA and HRVO, which both give way as if they had the whole 
 them has a memory, so that dead ends hold them. The package knows no acceleration of the wheels; the
 safety filter makes up for that.
 
-Tuning (docs/explanation/peers.md): margins of 0, 0.02 and 0.05 m in two training fields; ORCA's
+Tuning (docs/results/peers.md): margins of 0, 0.02 and 0.05 m in two training fields; ORCA's
 horizon and its treatment of obstacles in `sparse` and before one cylinder. It is far from a search.
 """
 
