@@ -98,9 +98,7 @@ class Escape:
         goal = towards_goal(observation)
         here, to_goal = observation.position, goal.distance
         [middle] = observation.sense([goal.bearing])
-        # c_f is in S_p for the paper's range, 5·S_p; it grows with a longer range.
-        sight = observation.range / USUAL_RANGE if observation.sees_far else observation.unit
-        enough = min(breakout_at * sight, observation.range, to_goal)
+        enough = min(_breakout_distance(observation, breakout_at), observation.range, to_goal)
         if to_goal < self._nearest - NEARER * observation.size:
             self._nearest, self._since, self._straight = to_goal, observation.time, False
         self._graph.pass_by(here)
@@ -115,11 +113,7 @@ class Escape:
                 return self._follow(observation)
             self._frontier, self._straight = None, True
         blocked = middle < enough
-        stalled = (
-            not self._straight
-            and observation.time - self._since > PATIENCE * observation.slowness
-            and middle < min(observation.range, to_goal)
-        )
+        stalled = self._out_of_patience(observation) and middle < min(observation.range, to_goal)
         if (blocked or stalled) and not self._follows:
             return _break_out(observation, goal.bearing, middle)
         if blocked or stalled:
@@ -132,8 +126,13 @@ class Escape:
         # robot is nearer than ever before.
         return goal._replace(exact=self._straight)
 
+    def _out_of_patience(self, observation: Observation) -> bool:
+        """Return whether the routine part has brought the robot no nearer to the goal for long."""
+        waited = observation.time - self._since
+        return not self._straight and waited > PATIENCE * observation.slowness
+
     def _begin(self, observation: Observation) -> None:
-        """Take up another goal: what was seen stays, what was chosen and tried for the last not."""
+        """Take up another goal: keep what was seen, forget what was tried for the last goal."""
         if self._goal is not None:
             self._frontier, self._follower = None, PathFollower([])
             self._failed, self._left, self._distrusts_map = [], [], False
@@ -242,6 +241,15 @@ class Escape:
     def _is_at(self, point: Point, places: list[Point]) -> bool:
         near = NEAR * self._graph.size
         return any(math.dist(point, place) <= near for place in places)
+
+
+def _breakout_distance(observation: Observation, breakout_at: float) -> float:
+    """Return the free distance (m) below which the robot breaks out: c_f · S_p.
+
+    For a range of more than 5·S_p it grows in proportion to the range.
+    """
+    scale = observation.range / USUAL_RANGE if observation.sees_far else observation.unit
+    return breakout_at * scale
 
 
 def _break_out(observation: Observation, bearing: float, middle: float) -> Aim:
