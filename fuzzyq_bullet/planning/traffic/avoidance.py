@@ -9,7 +9,7 @@ from fuzzyq_bullet.planning.base import Floats, Observation
 from fuzzyq_bullet.planning.cost_to_go import NO_HITS
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.traffic.give_way import GiveWay
-from fuzzyq_bullet.planning.traffic.passive_safety import limit_speed
+from fuzzyq_bullet.planning.traffic.passive_safety import PassiveSafety
 from fuzzyq_bullet.planning.traffic.tracker import Tracker, Traffic
 
 
@@ -22,6 +22,7 @@ class TrafficAvoidance:
     def __init__(self) -> None:
         self._tracker = Tracker()
         self._give_way = GiveWay()
+        self._safety = PassiveSafety()
         self._traffic: Traffic | None = None
         self._updated_at = 0.0
         self._waited = 0.0  # seconds during which the robot gave way or was slowed down
@@ -60,6 +61,6 @@ class TrafficAvoidance:
         """Return the decision, limited so that the robot is passively safe."""
         if self._traffic is None:
             return decision
-        limited = limit_speed(decision, observation, self._traffic)
+        limited = self._safety.limit(decision, observation, self._traffic)
         self._waits = self._waits or limited.reach < decision.reach
         return limited

@@ -192,7 +192,7 @@ def _choose(
             return int(k)
         heading, length = candidates.headings[k], candidates.lengths[k]
         speed = safe_speed(heading, length, observation, motion, traffic)
-        if speed is None or speed > min(observation.speed, CREEP_SPEED):
+        if speed is not None and speed > min(observation.speed, CREEP_SPEED):
             return int(k)
     return int((gaps.min(axis=0) + TIE_BREAK * values).argmax())
 

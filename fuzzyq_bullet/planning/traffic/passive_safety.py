@@ -27,6 +27,7 @@ from fuzzyq_bullet.planning.base import (
 )
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.rollout import rollout
+from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.planning.traffic.track import SPEED_TOLERANCE
 from fuzzyq_bullet.planning.traffic.tracker import Traffic
 
@@ -41,6 +42,8 @@ SPEEDS = 6
 BRAKE_DELAYS = (0.0, 0.4, 0.8, 1.2)
 """How long the robot may go on before it brakes (s): to pass in front of an obstacle may be safer
 than to stop in its way."""
+EARLIER = 0.25
+"""An obstacle may meet what stands, and turn, so much earlier than it is expected to (s)."""
 DT = 0.05
 """Time step of the prediction (s)."""
 JUMP_TIME = LONGEST_STRIDE * STEP_UNIT / USUAL_SPEED
@@ -49,31 +52,46 @@ STEP_PARTS = 8
 """The step of the point robot is shortened by multiples of this part of it."""
 
 
-def limit_speed(decision: Decision, observation: Observation, traffic: Traffic) -> Decision:
-    """Return the decision, limited so that the robot is passively safe.
+class PassiveSafety:
+    """Keeps the robot passively safe for one episode.
 
-    Args:
-        decision: A decision that the safety filter has passed.
-        observation: What was observed.
-        traffic: What moves or is uncertain.
+    As long as a speed along some heading is safe, the robot has a way out. A decision that leaves
+    none is replaced by the latest heading that had one, if that is still safe.
     """
-    motion = observation.motion
-    if not len(traffic.points):
-        return decision
-    if motion is None:
-        return decision._replace(step=_safe_step(decision, observation, traffic))
-    speed = safe_speed(decision.heading, decision.reach, observation, motion, traffic)
-    if speed is None:
-        return decision
-    delay = motion.period + motion.latency
-    reach = speed * delay + motion.way_to_stop(speed) if speed else 0.0
-    return decision._replace(reach=min(decision.reach, reach))
+
+    def __init__(self) -> None:
+        self._way_out: float | None = None  # world heading (rad)
+
+    def limit(self, decision: Decision, observation: Observation, traffic: Traffic) -> Decision:
+        """Return the decision, limited so that the robot is passively safe.
+
+        Args:
+            decision: A decision that the safety filter has passed.
+            observation: What was observed.
+            traffic: What moves or is uncertain.
+        """
+        motion = observation.motion
+        if motion is None:
+            return decision._replace(step=_safe_step(decision, observation, traffic))
+        speed = safe_speed(decision.heading, decision.reach, observation, motion, traffic)
+        if speed is None and self._way_out is not None:
+            step = LONGEST_STRIDE * observation.unit
+            out = decision._replace(heading=self._way_out, step=step, reach=math.inf)
+            out = safety_filter(out, observation)
+            speed = safe_speed(out.heading, out.reach, observation, motion, traffic)
+            decision = decision if speed is None else out
+        self._way_out = None if speed is None else decision.heading
+        if speed == math.inf:
+            return decision
+        delay = motion.period + motion.latency
+        reach = speed * delay + motion.way_to_stop(speed) if speed else 0.0
+        return decision._replace(reach=min(decision.reach, reach))
 
 
 def safe_speed(
     heading: float, reach: float, observation: Observation, motion: Motion, traffic: Traffic
 ) -> float | None:
-    """Return the greatest passively safe speed (m/s); 0 if none is, None if all are.
+    """Return the greatest passively safe speed (m/s); None if none is, infinite if all are.
 
     A speed is safe if for one of ``BRAKE_DELAYS`` the robot may hold it until its next decision, go
     on as fast as it can, and then brake.
@@ -87,7 +105,7 @@ def safe_speed(
     """
     traffic = _in_reach(observation, motion, traffic)
     if not len(traffic.points):
-        return None
+        return math.inf
     speeds, brakes_after = _attempts(observation, motion)
     delay = motion.latency + motion.period
     positions = rollout(
@@ -105,9 +123,9 @@ def safe_speed(
     safe = ((gaps > least) | ~_until_stood(positions)).all(axis=0)
     safe_speeds = safe.reshape(SPEEDS, len(BRAKE_DELAYS)).any(axis=1)
     if safe_speeds[0]:
-        return None
+        return math.inf
     if not safe_speeds.any():
-        return 0.0
+        return None
     return float(speeds[:: len(BRAKE_DELAYS)][int(safe_speeds.argmax())])
 
 
@@ -155,7 +173,8 @@ def _gaps(positions: Floats, heading: float, observation: Observation, traffic: 
     relative = traffic.points - observation.position
     along = relative @ np.array([math.cos(heading), math.sin(heading)])
     ahead = along > COS_AHEAD * np.hypot(*relative.T)
-    straight = np.minimum(times[:, None], np.where(ahead, 0.0, traffic.straight_for))
+    straight_for = np.where(ahead, 0.0, np.maximum(traffic.straight_for - EARLIER, 0.0))
+    straight = np.minimum(times[:, None], straight_for)
     centres = traffic.points + straight[..., None] * traffic.velocities
     grown = SPEED_TOLERANCE * straight + traffic.max_speeds * (times[:, None] - straight)
     apart = np.linalg.norm(positions[:, :, None] - centres[:, None], axis=3)

@@ -108,7 +108,8 @@ class TrackHistory:
             tolerance: How far off a straight line its positions may be (m).
             limit: A greater speed (m/s) is a mistake of the fit.
         """
-        if abs(circle.radius - self.radius) > RADIUS_CHANGE:
+        turned = self.velocity and math.dist(self.predict(time), circle.centre) > tolerance
+        if turned or abs(circle.radius - self.radius) > RADIUS_CHANGE:
             self.positions.clear()
         self.radius = circle.radius
         self.positions.append((time, *circle.centre))

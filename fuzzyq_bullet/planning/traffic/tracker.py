@@ -111,12 +111,13 @@ class Tracker:
         """Return which points move, shape (N,), and for how long each was a surface (s), (N,)."""
         moves, age = np.zeros_like(scan.met), np.zeros(len(scan.met))
         points = scan.points[scan.met]
+        stood = np.ones(len(points), dtype=np.bool_)  # in all scans since: what turns comes back
         for compared in AGES:
             earlier = self._scan_before(scan.time - compared)
             if earlier is None or not len(points):
                 continue
             moves[scan.met] |= in_free_space(earlier, points, tolerance)
-            stood = on_surface(earlier, points, tolerance)
+            stood &= on_surface(earlier, points, tolerance)
             age[scan.met] = np.where(stood, scan.time - earlier.time, age[scan.met])
         return moves, np.where(moves, 0.0, age)
 
@@ -211,10 +212,9 @@ def _detect(
             group = rays[apart.min(axis=1) <= JOINED_TO]
             groups.append(group)
             moving[group] = True
-        elif (oldest := float(age[rays].max())) < STANDS_AFTER:
+        elif float(age[rays].max()) < STANDS_AFTER:
             uncertain[rays] = True
-            # If it were faster, it would not be on the same surface any more.
-            max_speeds[rays] = min(limit, tolerance / oldest) if oldest else limit
+            max_speeds[rays] = limit  # it may have turned round a moment ago
     return _Detection(groups, moving, uncertain, max_speeds)
 
 
