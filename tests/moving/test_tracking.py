@@ -73,17 +73,18 @@ def test_the_velocity_of_a_disc_is_told_to_within_5_cm_a_second(place, goes, spe
         assert found or math.cos(goes - place) > 0.4  # what moves away enters hardly anything free
 
 
-@given(angles, st.floats(0.4, 0.5), st.integers(6, 12))
-def test_what_goes_away_and_comes_back_is_never_taken_for_what_stands(place, speed, turns_after):
+@given(angles, st.floats(0.3, 0.5))
+def test_what_goes_away_may_turn_round_and_come_at_the_closing_speed(place, speed):
     tracker = Tracker()
-    for k in range(2 * turns_after):
-        away = 0.05 * speed * min(k, 2 * turns_after - k)
-        traffic = tracker.update(reading(0.05 * k, (0.0, 0.0), [pillar(*along(place, 0.7 + away))]))
-        assert len(traffic.points)
-        assert not len(traffic.standing)
+    for k in range(12):
+        disc = along(place, 0.7 + 0.05 * k * speed)
+        traffic = tracker.update(reading(0.05 * k, (0.0, 0.0), [pillar(*disc)]))
+        unknown = ~traffic.velocities.any(axis=1)
+        assert (traffic.max_speeds[unknown] == 0.6).all()
+    assert len(traffic.points)
 
 
-@given(angles, st.floats(0.0, 0.6), st.sampled_from([0.0, 0.005, 0.01]), st.integers(0, 2**32))
+@given(angles, st.floats(0.0, 0.6), st.sampled_from([0.0, 0.005]), st.integers(0, 2**32))
 @settings(max_examples=25, deadline=None)
 def test_what_stands_is_never_told_to_move(drives, own, noise, seed):
     rng = np.random.default_rng(seed)
