@@ -141,7 +141,7 @@ class FilmRequest:
             end = max(
                 one.ticks.time[-1] for one in (runs if isinstance(runs, Sequence) else [runs])
             )
-            if self.still > end + 0.005:  # as it is told
+            if self.still > end + 0.05:  # a result tells tenths of a second
                 raise UserError(
                     f"--still: {self.still:g} s is after the end of the run, {end:.2f} s"
                 )

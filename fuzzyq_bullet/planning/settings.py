@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import (
     BaseModel,
@@ -45,9 +45,15 @@ BreakoutAt: TypeAlias = Annotated[_Number, Field(gt=0.0, le=5.0)]
 
 
 class PlannerSettings(BaseModel):
-    """What every planner's settings have: the name that chooses it. Unknown keys are mistakes."""
+    """What every planner's settings have: the name that chooses it. Unknown keys are mistakes.
+
+    Attributes:
+        needs_wheels: Whether it answers with twists, which the kinematic drive cannot carry out.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    needs_wheels: ClassVar[bool] = False
 
     name: str
 

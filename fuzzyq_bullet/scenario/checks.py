@@ -29,15 +29,17 @@ Conflict: TypeAlias = tuple[Loc, str]
 def find_conflicts(scenario: Scenario) -> list[Conflict]:
     """Return what stands in the way of running the scenario: places and messages, none if well.
 
-    Conflicts are: start or goal outside the arena; the robot's disc at the start, or at the centre
-    of the goal or of a via point, touching a wall or an obstacle; a start within the first via
-    point, or within the goal if there is none (a run of no steps, with no shortest path to measure
-    it by); a via point around the centre of the one before it; an obstacle wholly outside the
-    walls; obstacles to be drawn that are too large for the arena or too many; a motion that begins
-    inside something, or is too fast; a sensor that sees less far than the longest step of the
-    controller. Obstacles may overlap each other and poke through walls.
+    Conflicts are: a planner that needs wheels in the kinematic drive; start or goal outside the
+    arena; the robot's disc at the start, or at the centre of the goal or of a via point, touching a
+    wall or an obstacle; a start within the first via point, or within the goal if there is none (a
+    run of no steps, with no shortest path to measure it by); a via point around the centre of the
+    one before it; an obstacle wholly outside the walls; obstacles to be drawn that are too large
+    for the arena or too many; a motion that begins inside something, or is too fast; a sensor that
+    sees less far than the longest step of the controller. Obstacles may overlap each other and poke
+    through walls.
     """
     return [
+        *_drive(scenario),
         *_places(scenario),
         *_range(scenario),
         *_obstacles(scenario),
@@ -59,6 +61,13 @@ def check(scenario: Scenario) -> None:
         if len(conflicts) > MAX_SHOWN:
             lines.append(f"{scenario.name}: and {len(conflicts) - MAX_SHOWN} more")
         raise UserError(*lines)
+
+
+def _drive(scenario: Scenario) -> list[Conflict]:
+    planner = scenario.planner
+    if scenario.drive == "wheels" or not planner.needs_wheels:
+        return []
+    return [(("drive",), f"the planner {planner.name} needs wheels, not {scenario.drive}")]
 
 
 def _places(scenario: Scenario) -> list[Conflict]:

@@ -123,7 +123,6 @@ class ApfPlanner:
             heading,
             min(1.0, size) * full_step(observation),
             aim=observation.goal,
-            target=observation.goal,
         )
 
     def _watch(

@@ -24,7 +24,7 @@ Tuning (docs/results/peers.md): the best of 10 settings on 12 training fields.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,8 @@ _Weight = Annotated[Number, Field(ge=0.0, le=100.0)]
 
 class DwaSettings(PeerSettings):
     """The dynamic window approach of Fox, Burgard and Thrun (1997)."""
+
+    needs_wheels: ClassVar[bool] = True
 
     name: Literal["dwa"] = "dwa"
     heading: _Weight = Field(default=1.0, description="α: weight of facing the goal.")
@@ -109,7 +111,7 @@ class DwaPlanner:
         points = _turned(around.points, -observation.heading)
         wide = around.radius + settings.margin
         window = window_of(observation, motion, interval, points, wide)
-        told = Decision(0.0, 0.0, aim=observation.goal, target=observation.goal)
+        told = Decision(0.0, 0.0, aim=observation.goal)
         ahead = window.admissible & (window.speeds > CRAWL)[:, None]
         if not ahead.any():
             return TwistCommand(

@@ -26,7 +26,7 @@ from __future__ import annotations
 import importlib
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
 from pydantic import Field, Strict
@@ -56,6 +56,8 @@ TUNED: Mapping[Behavior, Mapping[str, bool | int | float]] = {
 
 class NavgroundSettings(PeerSettings):
     """A behaviour of the package navground (extra ``peers``)."""
+
+    needs_wheels: ClassVar[bool] = True
 
     name: Literal["navground"] = "navground"
     behavior: Behavior = Field(default="HL", description="Which of its behaviours decides.")
@@ -116,7 +118,7 @@ class NavgroundPlanner:
             for point, distance in zip(points, around.distances[around.met].tolist(), strict=True)
         ]
         asked = behavior.compute_cmd(motion.period, core.Frame.relative)
-        told = Decision(0.0, 0.0, aim=observation.goal, target=observation.goal)
+        told = Decision(0.0, 0.0, aim=observation.goal)
         return TwistCommand(float(asked.velocity[0]), float(asked.angular_speed), told)
 
     def _dress(self, observation: Observation, motion: Motion) -> None:

@@ -246,7 +246,6 @@ class TangentBugPlanner:
             reach=usable,
             mode=mode,
             aim=to,
-            target=observation.goal,
         )
 
 

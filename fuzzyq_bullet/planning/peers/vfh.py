@@ -187,7 +187,7 @@ class VfhPlanner:
             heading, part = float(np.argmin(density)) * ALPHA, SLOWEST
         self._chosen = heading
         step = part * full_step(observation)
-        return Decision(heading, step, aim=observation.goal, target=observation.goal)
+        return Decision(heading, step, aim=observation.goal)
 
     def _mask(self, observation: Observation, points: Floats, wide: float) -> Bools:
         """Return the sectors that the robot cannot turn into at its speed, shape (72,)."""
