@@ -29,6 +29,7 @@ def check(
         Figures, and what is wrong.
     """
     out, temporary, log = disk / "check", disk / "tmp", disk / "check.txt"
+    verdict = disk / "check.json"
     command = [
         *(sys.executable, "-m", "fuzzyq_bullet", "check", *SCENARIOS, "--repeat", str(repeat)),
         *("--jobs", str(jobs), "--video", "all", "--out", str(out), "--replace", "--json"),
@@ -38,8 +39,8 @@ def check(
     due = sorted(rng.randrange(1, total) for _ in range(kills))
     due.append(total + len(SCENARIOS) + 1)  # while films are made
     killed, faults = 0, []
-    with log.open("wb") as file:
-        watched = Watched(command, mark, temporary, file, ROOT)
+    with log.open("wb") as file, verdict.open("wb") as output:
+        watched = Watched(command, mark, temporary, file, ROOT, output)
         while watched.process.poll() is None:
             time.sleep(0.1)
             lines = log.read_bytes().count(b"\n")
@@ -51,8 +52,7 @@ def check(
                 due.pop(0)
         if not watched.all_gone(END):
             faults.append(f"processes of the check were still there after {END:g} s")
-    assert watched.process.stdout is not None
-    told = json.loads(watched.process.stdout.read())
+    told = json.loads(verdict.read_bytes())
     verdicts = told["scenarios"]
     broken = [one for one in verdicts if one["status"] == "broken"]
     films = [one for one in verdicts if one["video"]]

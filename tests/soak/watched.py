@@ -38,7 +38,13 @@ class Watched:
     """A command whose processes carry a mark in their environment."""
 
     def __init__(
-        self, command: Sequence[str], mark: str, temporary: Path, log: IO[bytes], cwd: Path
+        self,
+        command: Sequence[str],
+        mark: str,
+        temporary: Path,
+        log: IO[bytes],
+        cwd: Path,
+        output: IO[bytes] | int = subprocess.DEVNULL,
     ) -> None:
         """Start it.
 
@@ -48,11 +54,12 @@ class Watched:
             temporary: Where they put their temporary files.
             log: Takes what it says on stderr.
             cwd: Its folder.
+            output: Takes what it says on stdout: a file, because nobody reads a pipe meanwhile.
         """
         self._mark = mark
         environment = {**os.environ, MARK: mark, "TMPDIR": str(temporary)}
         self.process = subprocess.Popen(
-            command, env=environment, stdout=subprocess.PIPE, stderr=log, cwd=cwd
+            command, env=environment, stdout=output, stderr=log, cwd=cwd
         )
 
     def seen(self) -> list[Seen]:
