@@ -191,6 +191,7 @@ def _safe_step(decision: Decision, observation: Observation, traffic: Traffic) -
         step = part * decision.step
         positions = observation.position + step * parts[:, None] * ahead
         apart = np.linalg.norm(positions[:, None] - traffic.points, axis=2)
-        if ((apart - times[:, None] * traffic.max_speeds).min(axis=1) > near).all():
+        gaps = apart - times[:, None] * traffic.max_speeds
+        if (gaps.min(axis=1, initial=math.inf) > near).all():
             return float(step)
     return 0.0

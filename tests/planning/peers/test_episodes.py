@@ -7,7 +7,7 @@ import importlib.util
 import pytest
 
 from fuzzyq_bullet import result_of
-from fuzzyq_bullet.errors import PlannerError
+from fuzzyq_bullet.errors import UserError
 from tests.planning.peers.helpers import drive, drive_bundled
 
 NAVGROUND = pytest.param(
@@ -80,6 +80,6 @@ def test_what_answers_with_decisions_drives_the_papers_point_robot(planner):
 
 @pytest.mark.parametrize("planner", ["dwa", NAVGROUND])
 def test_what_answers_with_twists_refuses_it_in_one_line(planner):
-    with pytest.raises(PlannerError, match="needs the drive wheels, not kinematic") as error:
+    with pytest.raises(UserError, match="needs wheels, not kinematic") as error:
         drive(planner, drive="kinematic")
     assert "\n" not in str(error.value)
