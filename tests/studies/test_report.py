@@ -22,6 +22,7 @@ from fuzzyq_bullet.studies import FieldsPlan, Plan, described, planners_of
 from fuzzyq_bullet.studies.episodes import Environment, Row, as_csv, from_csv
 from fuzzyq_bullet.studies.escape.study import Escape
 from fuzzyq_bullet.studies.familiar.study import Familiar
+from fuzzyq_bullet.studies.field.study import AgainstField
 from fuzzyq_bullet.studies.learning.study import NO_CONTROLLER, ComparisonPlan
 from fuzzyq_bullet.studies.learning.table import LEARNED
 from fuzzyq_bullet.studies.report.films import picked
@@ -261,6 +262,10 @@ def test_every_sweep_of_a_folder_is_on_the_page(
     write(home / "familiar", again.model_dump(mode="json"), rows_of(again), "familiar.csv")
     disturbed = Robust(runs=1, count=5, disturbances="noise", levels="2").plan()
     write(home / "robust", disturbed.model_dump(mode="json"), rows_of(disturbed), "robust.csv")
+    against = next(
+        AgainstField(runs=1, planners="fuzzy,fuzzy-q-lambda", kinds="scatter").stages()
+    ).plan
+    write(home / "field", against.model_dump(mode="json"), rows_of(against), "field.csv")
 
     assert report(monkeypatch, home, *PLAIN) == 0
     assert capsys.readouterr().out == f"{home / 'report.html'}\n"
@@ -276,12 +281,14 @@ def test_every_sweep_of_a_folder_is_on_the_page(
             "best on 2 environments of the training",
         ),
         *(
-            "Noise, slip and latency",
+            "Noise, slip, latency and moving obstacles",
             "0.01 m",
             "What learning gains",
             "Out of dead ends, fuzzy",
             "1.00 [0.21, 1.00]",
             "traps",
+            "Against the field",
+            "time ÷ bound",
         ),
         *("fuzzyq bench steps --runs 2 --count 50 --grid 2 ", "--traps 4 --rectangles 30"),
         "--planners fuzzy,fuzzy-q-lambda --counts 5,25 --runs 1 --drive kinematic --seed 0",
