@@ -110,7 +110,7 @@ class TrackHistory:
         """
         turned = self.velocity and math.dist(self.predict(time), circle.centre) > tolerance
         if turned or abs(circle.radius - self.radius) > RADIUS_CHANGE:
-            self.positions.clear()
+            self.positions.clear()  # the velocity is fitted anew
         self.radius = circle.radius
         self.positions.append((time, *circle.centre))
         while time - self.positions[0][0] > WINDOW:
