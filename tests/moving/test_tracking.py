@@ -84,7 +84,7 @@ def test_what_goes_away_may_turn_round_and_come_at_the_closing_speed(place, spee
     assert len(traffic.points)
 
 
-@given(angles, st.floats(0.0, 0.6), st.sampled_from([0.0, 0.005]), st.integers(0, 2**32))
+@given(angles, st.floats(0.0, 0.6), st.sampled_from([0.0, 0.005, 0.01]), st.integers(0, 2**32))
 @settings(max_examples=25, deadline=None)
 def test_what_stands_is_never_told_to_move(drives, own, noise, seed):
     rng = np.random.default_rng(seed)

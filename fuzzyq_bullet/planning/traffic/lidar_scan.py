@@ -53,12 +53,14 @@ def in_free_space(earlier: LidarScan, points: Floats, tolerance: float) -> Flags
     """Return which points (m), shape (K, 2), lie where an earlier scan saw free space.
 
     A point does if it is nearer, by more than the tolerance (m), than the ends of both rays
-    beside it.
+    beside it, and of all rays that may be beside it if the sensor is wrong.
     """
     ray, distance = _ray_before(earlier, points)
-    next_ray = (ray + 1) % len(earlier.lengths)
-    seen = np.minimum(earlier.lengths[ray], earlier.lengths[next_ray])
-    return np.asarray(distance < seen - tolerance)
+    count = len(earlier.lengths)
+    off = (tolerance - SURFACE_TOLERANCE) / max(float(distance.min(initial=math.inf)), 1e-6)
+    more = min(math.ceil(off / (math.tau / count) - 1e-9), NEIGHBOURS)
+    beside = (ray[:, None] + np.arange(-more, more + 2)) % count
+    return np.asarray(distance < earlier.lengths[beside].min(axis=1) - tolerance)
 
 
 def on_surface(earlier: LidarScan, points: Floats, tolerance: float) -> Flags:
