@@ -27,8 +27,7 @@ from fuzzyq_bullet.planning.commands import (
 )
 from fuzzyq_bullet.planning.controllers import fields_of
 from fuzzyq_bullet.planning.decision import DecisionError, checked
-from fuzzyq_bullet.planning.safety_filter import safety_filter
-from fuzzyq_bullet.planning.twist_filter import twist_filter
+from fuzzyq_bullet.planning.traffic.guard import Guard
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.models import Limits, Scenario
@@ -175,7 +174,7 @@ class Episode:
         self._fields = fields_of(scenario.planner)
         self._field = world.field
         own = scenario.planner if isinstance(scenario.planner, CommandSettings) else None
-        self._guarded = own is not None and own.guard
+        self._guard = Guard() if own is not None and own.guard else None
         rate = rate or (own.rate if own else DECISIONS_A_SECOND)
         self._driver = _driver(world, scenario, rate)
         self._decisions: list[tuple[int, Decision]] = []
@@ -210,16 +209,16 @@ class Episode:
             ValueError: If the episode is over already.
         """
         if not isinstance(answer, TwistCommand | WheelCommand):
-            if self._guarded:
-                answer = safety_filter(checked(answer, self._fields), observation)
+            if self._guard is not None:
+                answer = self._guard.limit_decision(checked(answer, self._fields), observation)
             self.advance(answer)
             return answer
         motion = observation.motion
         asked = limited = twist_of(answer, motion)
         assert motion is not None  # else it was refused
         told = equivalent(asked, observation, motion)
-        if self._guarded:
-            limited, free = twist_filter(asked, observation)
+        if self._guard is not None:
+            limited, free = self._guard.limit_twist(asked, observation, motion)
             told = equivalent(limited, observation, motion)._replace(guard=free)
         told = checked(told, self._fields)
         self._asked[len(self._decisions)] = Twist(asked.speed, asked.turn_rate)

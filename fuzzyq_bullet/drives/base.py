@@ -13,6 +13,7 @@ from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Motion, Observation
 from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.planning.settings import GuardedSettings
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.passing import Passing
 from fuzzyq_bullet.scenario.robot import Robot
@@ -60,6 +61,8 @@ class Driver(ABC):
         world.movers.start(scenario.seed)
         self._movers = world.movers
         self._closing_speed = self._movers.fastest(scenario.limits.time)
+        if isinstance(scenario.planner, GuardedSettings):
+            self._closing_speed = scenario.planner.closing_speed_among(self._closing_speed)
         self._goal = scenario.goal
         self._targets = scenario.targets
         self._passing = Passing(scenario.via, scenario.start.position)

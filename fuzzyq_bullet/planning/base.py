@@ -182,8 +182,8 @@ class Observation:
         unit: S_p, the unit of the fuzzy controller (m): the robot's radius.
         uncertainty: How much less may be free than the sensor tells (m), by its noise and whatever
             else the scenario disturbs.
-        closing_speed: How fast what moves, or is not seen yet, may come (m/s): the greatest speed
-            of the scenario's moving obstacles. 0 where all obstacles stand.
+        closing_speed: How fast what moves, or is not seen yet, may come (m/s): what the planner's
+            settings say, else the greatest speed of the scenario's obstacles. 0 where all stand.
     """
 
     time: float

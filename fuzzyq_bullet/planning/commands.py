@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 from fuzzyq_bullet.columns import Column
 from fuzzyq_bullet.planning.base import Motion, Observation
 from fuzzyq_bullet.planning.decision import FARTHEST, Decision, DecisionError
-from fuzzyq_bullet.planning.settings import PlannerSettings
+from fuzzyq_bullet.planning.settings import GuardedSettings
 from fuzzyq_bullet.quantities import Number
 from fuzzyq_bullet.wording import shorten
 
@@ -78,10 +78,11 @@ def _whole_steps(rate: float) -> float:
 Rate: TypeAlias = Annotated[Number, Field(ge=1.0, le=HIGHEST_RATE), AfterValidator(_whole_steps)]
 
 
-class CommandSettings(PlannerSettings):
+class CommandSettings(GuardedSettings):
     """For planners of one's own: how often they decide, and whether they are guarded.
 
-    A subclass gives these two keys to any planner, whatever it answers with.
+    A subclass gives ``rate``, ``guard`` and ``closing_speed`` to any planner, whatever it answers
+    with.
     """
 
     rate: Rate = Field(

@@ -20,8 +20,8 @@ from fuzzyq_bullet.planning.aim import Aim, towards_goal
 from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.escape import Escape
-from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.planning.settings import DirectSettings
+from fuzzyq_bullet.planning.traffic.guard import Guard
 
 LINE_ANGLE = math.radians(45.0)
 """Angle of the left and right lines from the middle one (rad), as in the fuzzy planners."""
@@ -136,6 +136,7 @@ class DirectPlanner:
         self._best = [greedy(row) for row in policy.table]
         self._escape = Escape() if settings.breakout else None
         self._settings = settings
+        self._guard = Guard() if settings.guard else None
 
     def decide(self, observation: Observation, /) -> Decision:
         """Return a step along the best heading."""
@@ -146,7 +147,7 @@ class DirectPlanner:
             aim = self._escape.aim(observation, self._settings.breakout_at)
             sensed = sense(observation, aim)
             decision = _towards(aim, act(sensed, self._best[sensed.state]))
-        return safety_filter(decision, observation) if self._settings.guard else decision
+        return self._guard.limit_decision(decision, observation) if self._guard else decision
 
 
 def _towards(aim: Aim, decision: Decision) -> Decision:

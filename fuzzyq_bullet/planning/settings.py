@@ -11,9 +11,11 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    SerializerFunctionWrapHandler,
     Strict,
     ValidationInfo,
     field_validator,
+    model_serializer,
 )
 from pydantic_core import PydanticCustomError
 
@@ -56,6 +58,28 @@ class PlannerSettings(BaseModel):
     needs_wheels: ClassVar[bool] = False
 
     name: str
+
+
+class GuardedSettings(PlannerSettings):
+    """What the safety filter reckons with, of planners that have one."""
+
+    closing_speed: Annotated[_Number, Field(ge=0.0, le=3.0)] | None = Field(
+        default=None,
+        description="How fast what moves, or is not seen yet, may come (m/s): the safety filter "
+        "reckons with it; 0: everything stands. By default that of the fastest obstacle.",
+    )
+
+    def closing_speed_among(self, fastest: float) -> float:
+        """Return the speed (m/s) to reckon with where the fastest obstacle is so fast (m/s)."""
+        return fastest if self.closing_speed is None else self.closing_speed
+
+    @model_serializer(mode="wrap")
+    def _without_default(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out that nothing was said: records and plans from before the key are the same."""
+        told: dict[str, Any] = handler(self)
+        if self.closing_speed is None:
+            told.pop("closing_speed", None)
+        return told
 
 
 class RoutineSettings(PlannerSettings):
@@ -108,7 +132,7 @@ class WeightsSettings(PlannerSettings):
     )
 
 
-class RecoverySettings(RoutineSettings):
+class RecoverySettings(RoutineSettings, GuardedSettings):
     """Parameters of the breakout, the sustained avoidance (Section 4) and the safety filter."""
 
     guard: Annotated[bool, Strict()] = Field(
@@ -158,7 +182,7 @@ class FuzzyQLambdaSettings(PolicySettings, RecoverySettings):
     )
 
 
-class DirectSettings(PolicySettings):
+class DirectSettings(PolicySettings, GuardedSettings):
     """Parameters of the direct baselines: neither safety filter nor ways out unless asked for."""
 
     guard: Annotated[bool, Strict()] = Field(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from fuzzyq_bullet.planning.base import Motion, Observation
 from fuzzyq_bullet.planning.commands import TwistCommand
@@ -17,33 +18,53 @@ _STEPS_A_PERIOD = 12
 _MOST_STEPS = 100_000
 
 
-def twist_filter(twist: TwistCommand, observation: Observation) -> tuple[TwistCommand, float]:
+def twist_filter(
+    twist: TwistCommand, observation: Observation, motion: Motion
+) -> tuple[TwistCommand, float]:
     """Return the twist with its speed limited to what is free.
-
-    The robot goes on until the command reaches its wheels, comes to the twist within its
-    acceleration, holds it for a period, and then brakes to a stop. Every point that its centre
-    passes must be sensed to be free. If it is not with any speed, the robot brakes: that way was
-    free when it was last asked, so there always is one.
 
     Args:
         twist: What the planner asks for.
         observation: What it saw, of a robot with wheels.
+        motion: What its body can do.
 
     Returns:
         The limited twist, and the shortest of the free lengths (m) towards points of its arc.
     """
-    motion = observation.motion
-    assert motion is not None
+    found, shortest = first_free(slower(twist, motion), observation, motion)
+    return found or twist._replace(speed=0.0, turn_rate=0.0), shortest
+
+
+def slower(twist: TwistCommand, motion: Motion) -> list[TwistCommand]:
+    """Return the twist within the robot's limits, then with smaller speeds down to none."""
     speed = max(-motion.max_speed, min(twist.speed, motion.max_speed))
     rate = max(-motion.max_turn_rate, min(twist.turn_rate, motion.max_turn_rate))
+    return [
+        twist._replace(speed=speed * part / PARTS, turn_rate=rate) for part in range(PARTS, -1, -1)
+    ]
+
+
+def first_free(
+    twists: Iterable[TwistCommand], observation: Observation, motion: Motion
+) -> tuple[TwistCommand | None, float]:
+    """Return the first twist whose way is free.
+
+    The robot goes on until the command reaches its wheels, comes to the twist within its
+    acceleration, holds it for a period, and then brakes to a stop. Every point that its centre
+    passes must be sensed to be free. If it is not with any twist, the robot should brake: that way
+    was free when it was last asked, so there always is one.
+
+    Returns:
+        The twist, None if the way of none is free; and the shortest of the free lengths (m) towards
+        points of the last arc that was tried, 0 if there is none.
+    """
     shortest = 0.0
-    for part in range(PARTS, -1, -1):
-        tried = twist._replace(speed=speed * part / PARTS, turn_rate=rate)
-        arc = _arc(tried, observation, motion)
+    for twist in twists:
+        arc = _arc(twist, observation, motion)
         free, shortest = _free(arc, observation, RESERVE + observation.uncertainty)
         if free:
-            return tried, shortest
-    return twist._replace(speed=0.0, turn_rate=0.0), shortest
+            return twist, shortest
+    return None, shortest
 
 
 def _arc(

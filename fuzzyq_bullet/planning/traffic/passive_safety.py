@@ -103,7 +103,7 @@ def safe_speed(
         motion: What its body can do.
         traffic: What moves or is uncertain.
     """
-    traffic = _in_reach(observation, motion, traffic)
+    traffic = in_reach(observation, motion, traffic)
     if not len(traffic.points):
         return math.inf
     speeds, brakes_after = _attempts(observation, motion)
@@ -118,9 +118,7 @@ def safe_speed(
         dt=DT,
         brakes_after=brakes_after,
     )
-    gaps = _gaps(positions, heading, observation, traffic)
-    least = motion.radius + RESERVE + observation.uncertainty
-    safe = ((gaps > least) | ~_until_stood(positions)).all(axis=0)
+    safe = are_safe(positions, heading, observation, motion, traffic)
     safe_speeds = safe.reshape(SPEEDS, len(BRAKE_DELAYS)).any(axis=1)
     if safe_speeds[0]:
         return math.inf
@@ -129,7 +127,24 @@ def safe_speed(
     return float(speeds[:: len(BRAKE_DELAYS)][int(safe_speeds.argmax())])
 
 
-def _in_reach(observation: Observation, motion: Motion, traffic: Traffic) -> Traffic:
+def are_safe(
+    positions: Floats, heading: float, observation: Observation, motion: Motion, traffic: Traffic
+) -> Flags:
+    """Return which of C motions are passively safe, shape (C,).
+
+    Args:
+        positions: The robot's centre (m) every ``DT`` seconds until it stands, shape (S, C, 2).
+        heading: World heading along which it goes (rad).
+        observation: Where it is.
+        motion: What its body can do.
+        traffic: What moves or is uncertain.
+    """
+    gaps = _gaps(positions, heading, observation, traffic)
+    least = motion.radius + RESERVE + observation.uncertainty
+    return np.asarray(((gaps > least) | ~_until_stood(positions)).all(axis=0))
+
+
+def in_reach(observation: Observation, motion: Motion, traffic: Traffic) -> Traffic:
     """Return the part of the traffic that can touch the robot before it could have stopped."""
     delay = motion.latency + motion.period
     time = delay + motion.max_speed / motion.acceleration + STANDSTILL
