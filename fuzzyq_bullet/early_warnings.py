@@ -24,7 +24,8 @@ def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
 
     They are: no way to the goal at all, although it is expected to be reached; a limit of time, of
     decisions or an expectation that the robot could not keep on a straight line at full speed; an
-    angle that looks like degrees; rules with an input that belongs to none of its sets; a polygon
+    angle that looks like degrees; rules with an input that belongs to none of its sets; settings of
+    the planner that are of no effect, or need a package that is not installed; a polygon
     with a tip so sharp, or a part so thin, that the detection lines may see it too late; an
     obstacle that moves through what stands, out of the arena, or into the robot at the start.
 
@@ -34,6 +35,7 @@ def early_warnings(file: str, given: Scenario, realised: Scenario) -> list[str]:
         realised: The same with every obstacle listed.
     """
     found = [*_degrees(given), *_too_short(given), *_gaps(given), *_too_thin(given)]
+    found += [Problem(("planner", key), why) for key, why in given.planner.doubts()]
     if given.expect.outcome == "goal" and not has_way(realised):
         found.append(Problem(("goal",), NO_WAY))
     doubtful = doubtful_motions(realised, len(given.obstacles))

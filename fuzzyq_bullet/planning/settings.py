@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import (
@@ -59,6 +59,10 @@ class PlannerSettings(BaseModel):
 
     name: str
 
+    def doubts(self) -> Iterator[tuple[str, str]]:
+        """Yield what is allowed and yet hardly meant: a key, and one line about it."""
+        yield from ()
+
 
 class GuardedSettings(PlannerSettings):
     """What the safety filter reckons with, of planners that have one."""
@@ -72,6 +76,12 @@ class GuardedSettings(PlannerSettings):
     def closing_speed_among(self, fastest: float) -> float:
         """Return the speed (m/s) to reckon with where the fastest obstacle is so fast (m/s)."""
         return fastest if self.closing_speed is None else self.closing_speed
+
+    def doubts(self) -> Iterator[tuple[str, str]]:
+        """Yield what is allowed and yet hardly meant."""
+        yield from super().doubts()
+        if self.closing_speed is not None and not getattr(self, "guard", True):
+            yield "closing_speed", "the safety filter reckons with it, but guard is false"
 
     @model_serializer(mode="wrap")
     def _without_default(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -132,7 +142,7 @@ class WeightsSettings(PlannerSettings):
     )
 
 
-class RecoverySettings(RoutineSettings, GuardedSettings):
+class RecoverySettings(GuardedSettings, RoutineSettings):
     """Parameters of the breakout, the sustained avoidance (Section 4) and the safety filter."""
 
     guard: Annotated[bool, Strict()] = Field(
@@ -182,7 +192,7 @@ class FuzzyQLambdaSettings(PolicySettings, RecoverySettings):
     )
 
 
-class DirectSettings(PolicySettings, GuardedSettings):
+class DirectSettings(GuardedSettings, PolicySettings):
     """Parameters of the direct baselines: neither safety filter nor ways out unless asked for."""
 
     guard: Annotated[bool, Strict()] = Field(

@@ -61,20 +61,27 @@ def unknown_names(error: ValidationError) -> list[str]:
     return list(dict.fromkeys(names))[:MAX_SHOWN]
 
 
-def _known_elsewhere(loc: tuple[str | int, ...]) -> str:
-    """Say which planners do have a parameter that the chosen one has not."""
+def _whose_key(loc: tuple[str | int, ...], data: Any) -> str:
+    """Say which planner does not have a parameter, and which do."""
     if len(loc) != 2 or loc[0] != "planner":
         return ""
     knowing = [name for name in planner_names() if loc[1] in settings_for(name).model_fields]
-    return f" for this planner, known to {', '.join(knowing)}" if knowing else ""
+    known = f", known to {', '.join(knowing)}" if knowing else ""
+    return f" for the planner {_planner_in(data)}{known}"
+
+
+def _planner_in(data: Any) -> str:
+    """Return the name of the planner that plain data asks for."""
+    given = data.get("planner") if isinstance(data, dict) else None
+    return str(given.get("name", DEFAULT_PLANNER) if isinstance(given, dict) else given)
 
 
 def _problem(error: dict[str, Any], data: Any) -> Problem:
     loc = _without_tag(tuple(error["loc"]))
     kind, value, context = error["type"], error["input"], error.get("ctx", {})
-    if kind == "extra_forbidden" and (elsewhere := _known_elsewhere(loc)):
+    if kind == "extra_forbidden" and (whose := _whose_key(loc, data)):
         keys = _keys_at(tuple(error["loc"][:-1]), data)
-        return Problem(loc, refusal("unknown key" + elsewhere, loc[-1], keys))
+        return Problem(loc, refusal("unknown key" + whose, loc[-1], keys))
     if kind == "union_tag_not_found":
         key = context["discriminator"].strip("'")
         names = ", ".join(_NAMES[key]())
@@ -113,9 +120,7 @@ def _keys_at(loc: Loc, data: Any) -> list[str]:
     """Return the keys allowed in the mapping that ``loc`` leads to."""
     here: list[type[BaseModel]] = [Scenario]
     if loc[:1] == ("planner",):
-        given = data.get("planner") if isinstance(data, dict) else None
-        name = given.get("name", DEFAULT_PLANNER) if isinstance(given, dict) else given
-        here, loc = [settings_for(str(name))], loc[1:]
+        here, loc = [settings_for(_planner_in(data))], loc[1:]
     if loc[:1] == ("expect",):
         here, loc = [expect_model()], loc[1:]
     if loc[:1] == ("sensor",):

@@ -92,9 +92,21 @@ def test_the_least_scenario_is_read_with_defaults():
         ("random: {radius: 0.2}", "x.yaml:4: random.count: is required"),
         ("planner: {name: fuzzy, weights: [1, x]}",
          "x.yaml:4: planner.weights[1]: expected a number, got 'x'"),
-        ("planner: {weights: [1, 1]}", "x.yaml:4: planner.weights: unknown key for this planner, "
-         "known to fuzzy, improved-fuzzy; allowed: name, line_angle, turn_unit, distance, clear, "
-         "rules, samples, guard, breakout, breakout_at, following, policy"),
+        ("planner: {weights: [1, 1]}", "x.yaml:4: planner.weights: unknown key for the planner "
+         "fuzzy-q-lambda, known to fuzzy, improved-fuzzy; allowed: name, line_angle, turn_unit, "
+         "distance, clear, rules, samples, closing_speed, guard, breakout, breakout_at, following, "
+         "policy"),
+        ("planner: {name: vfh, rats: 5}", "x.yaml:4: planner.rats: unknown key for the planner "
+         "vfh; did you mean 'rate'? allowed: name, closing_speed, rate, guard, safety, high, low, "
+         "steepness, wide, goal_cost, turn_cost, change_cost, dense"),
+        ("planner: {closing_speed: 3.5}",
+         "x.yaml:4: planner.closing_speed: must be at most 3, got 3.5"),
+        ("planner: {name: dwa, heading: 0, clearance: 0, velocity: 0}",
+         "x.yaml:4: planner.velocity: heading, clearance and velocity are all 0: one must be "
+         "greater"),
+        ("planner: {name: vfh, goal_cost: 0, turn_cost: 0, change_cost: 0}",
+         "x.yaml:4: planner.change_cost: goal_cost, turn_cost and change_cost are all 0: one must "
+         "be greater"),
     ],
 )  # fmt: skip
 def test_a_wrong_value_is_named_with_line_key_and_what_is_allowed(added, line):

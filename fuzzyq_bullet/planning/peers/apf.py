@@ -27,6 +27,7 @@ Tuning (docs/results/peers.md): the best of 8 settings on 12 training fields.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -79,6 +80,13 @@ class ApfSettings(PeerSettings):
     longest: _Positive = Field(
         default=60.0, description="An escape that takes longer tries the other side (s)."
     )
+
+    def doubts(self) -> Iterator[tuple[str, str]]:
+        """Yield what is allowed and yet hardly meant."""
+        yield from super().doubts()
+        for key in ("patience", "enough", "longest"):
+            if not self.escape and key in self.model_fields_set:
+                yield key, "is of no effect: escape is false"
 
 
 class Trap(NamedTuple):

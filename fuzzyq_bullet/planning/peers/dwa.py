@@ -24,11 +24,13 @@ Tuning (docs/results/peers.md): the best of 10 settings on 12 training fields.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
+from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.geometry import wrap_angle
 from fuzzyq_bullet.planning.base import Floats, Motion, Observation
@@ -75,6 +77,27 @@ class DwaSettings(PeerSettings):
     margin: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
         default=0.02, description="How much more than half a detection line stays free (m)."
     )
+
+    @field_validator("velocity")
+    @classmethod
+    def _one_weighs(cls, value: float, info: ValidationInfo) -> float:
+        others = [info.data.get(key) for key in ("heading", "clearance")]
+        if value == 0.0 and others == [0.0, 0.0]:
+            raise PydanticCustomError(
+                "weights", "heading, clearance and velocity are all 0: one must be greater"
+            )
+        return value
+
+    def doubts(self) -> Iterator[tuple[str, str]]:
+        """Yield what is allowed and yet hardly meant."""
+        yield from super().doubts()
+        period = 1.0 / self.rate
+        if "interval" in self.model_fields_set and self.interval < period - 1e-9:
+            yield (
+                "interval",
+                f"{self.interval:g} s is shorter than the {period:.3g} s between two decisions "
+                f"(rate {self.rate:g}): it counts as {period:.3g} s",
+            )
 
 
 class Window(NamedTuple):

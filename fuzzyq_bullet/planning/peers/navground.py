@@ -24,8 +24,9 @@ horizon and its treatment of obstacles in `sparse` and before one cylinder. It i
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
@@ -52,6 +53,7 @@ TUNED: Mapping[Behavior, Mapping[str, bool | int | float]] = {
     "SocialForce": {},
 }
 """Properties that are not navground's defaults, because training fields were better for it."""
+_MISSING = "the package navground is not installed: pip install 'fuzzyq_bullet[peers]'"
 
 
 class NavgroundSettings(PeerSettings):
@@ -70,6 +72,12 @@ class NavgroundSettings(PeerSettings):
         "{tau: 0.2}.",
     )
 
+    def doubts(self) -> Iterator[tuple[str, str]]:
+        """Yield what is allowed and yet hardly meant: a run needs the package."""
+        yield from super().doubts()
+        if importlib.util.find_spec("navground") is None:
+            yield "name", f"a run would fail: {_MISSING}"
+
 
 class NavgroundPlanner:
     """Asks a behaviour of navground.
@@ -82,9 +90,7 @@ class NavgroundPlanner:
         try:
             core: Any = importlib.import_module("navground.core")
         except ImportError as error:
-            raise UserError(
-                "the package navground is not installed: pip install 'fuzzyq_bullet[peers]'"
-            ) from error
+            raise UserError(_MISSING) from error
         self._core = core
         self._settings = settings
         self._behavior: Any = core.Behavior.make_type(settings.behavior)

@@ -30,6 +30,7 @@ a random search on 12 training fields: 9 reached within 90 s, in 41.0 s on avera
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Literal
 
 import numpy as np
@@ -91,6 +92,27 @@ class VfhSettings(PeerSettings):
         if high is not None and value > high:
             raise PydanticCustomError("low", "must be at most high, {high}", {"high": high})
         return value
+
+    @field_validator("change_cost")
+    @classmethod
+    def _one_costs(cls, value: float, info: ValidationInfo) -> float:
+        others = [info.data.get(key) for key in ("goal_cost", "turn_cost")]
+        if value == 0.0 and others == [0.0, 0.0]:
+            raise PydanticCustomError(
+                "costs", "goal_cost, turn_cost and change_cost are all 0: one must be greater"
+            )
+        return value
+
+    def doubts(self) -> Iterator[tuple[str, str]]:
+        """Yield what is allowed and yet hardly meant: the paper demands μ1 > μ2 + μ3."""
+        yield from super().doubts()
+        rest = self.turn_cost + self.change_cost
+        if self.goal_cost <= rest:
+            yield (
+                "goal_cost",
+                f"{self.goal_cost:g} is not greater than turn_cost + change_cost, {rest:g}: the "
+                "robot may pass by the goal",
+            )
 
 
 class CertaintyGrid:
