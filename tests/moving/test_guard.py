@@ -116,6 +116,15 @@ def test_towards_who_comes_head_on_it_brakes_and_away_it_may_go_as_fast_as_it_li
     assert guard.limit_twist(away, seen, MOTION)[0] == away
 
 
+def test_beside_who_goes_straight_on_it_slows_down_because_he_may_turn():
+    guard = Guard()
+    for k in range(12):
+        seen = reading(0.05 * k, (0.0, 0.0), [pillar(0.6 - 0.025 * k, 0.62)])
+        seen = replace(seen, motion=MOTION, speed=0.5)
+        limited, _ = guard.limit_twist(TwistCommand(0.5, 0.0), seen, MOTION)
+    assert limited.speed < 0.3
+
+
 def one_that_moves(place, velocity, standing=()):
     """Return the traffic of one point that goes straight on."""
     speed = np.array([math.hypot(*velocity)])

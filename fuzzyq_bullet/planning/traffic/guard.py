@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+
 from fuzzyq_bullet.planning.base import Motion, Observation
 from fuzzyq_bullet.planning.commands import TwistCommand
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.planning.traffic.passive_safety import PassiveSafety
-from fuzzyq_bullet.planning.traffic.tracker import Tracker
+from fuzzyq_bullet.planning.traffic.tracker import Tracker, Traffic
 from fuzzyq_bullet.planning.traffic.twist_safety import safe_twists
 from fuzzyq_bullet.planning.twist_filter import first_free, slower, twist_filter
 
@@ -29,7 +33,7 @@ class Guard:
         decision = safety_filter(decision, observation)
         if observation.closing_speed == 0.0:
             return decision
-        return self._safety.limit(decision, observation, self._tracker.update(observation))
+        return self._safety.limit(decision, observation, self._traffic(observation))
 
     def limit_twist(
         self, twist: TwistCommand, observation: Observation, motion: Motion
@@ -41,8 +45,7 @@ class Guard:
         """
         if observation.closing_speed == 0.0:
             return twist_filter(twist, observation, motion)
-        traffic = self._tracker.update(observation)
-        shortest = 0.0
+        traffic, shortest = self._traffic(observation), 0.0
         for wanted in (twist, self._way_out):
             if wanted is None:
                 break
@@ -53,3 +56,12 @@ class Guard:
             if self._way_out is not None:
                 return self._way_out._replace(told=twist.told), shortest
         return twist._replace(speed=0.0, turn_rate=0.0), shortest
+
+    def _traffic(self, observation: Observation) -> Traffic:
+        """Return what moves, and may turn at any time.
+
+        These planners do not give way, and drive close beside what moves. To trust it to go
+        straight on would be too risky.
+        """
+        traffic = self._tracker.update(observation)
+        return replace(traffic, straight_for=np.zeros_like(traffic.straight_for))
