@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.machinery
+import importlib.util
 import math
 from pathlib import Path
 
@@ -121,3 +123,44 @@ def test_a_tip_too_sharp_for_the_sensor_is_told(tmp_path):
     scenario = load_scenario(file)
     [line] = early_warnings(str(file), scenario, scenario)
     assert line.startswith(f"{file}:6: obstacles[1]: has a sharp tip")
+
+
+@pytest.mark.parametrize(
+    ("planner", "line"),
+    [
+        ("{name: dwa, interval: 0.02}", "4: planner.interval: 0.02 s is shorter than the 0.05 s "),
+        ("{name: apf, escape: false, patience: 2}", "4: planner.patience: is of no effect: escape"),
+        ("{name: vfh, goal_cost: 4}", "4: planner.goal_cost: 4 is not greater than turn_cost + "),
+        ("{name: dwa, guard: false, closing_speed: 0.4}", "4: planner.closing_speed: the safety f"),
+        ("{name: q-lambda, closing_speed: 0.4}", "4: planner.closing_speed: the safety filter rec"),
+    ],
+)
+def test_settings_of_the_planner_that_are_hardly_meant_are_told(
+    planner: str, line: str, tmp_path: Path
+) -> None:
+    (told,) = warnings_of(f"{HEAD}planner: {planner}\n", tmp_path)
+    assert told.startswith(line)
+
+
+@pytest.mark.parametrize(
+    "planner",
+    ["{name: dwa, rate: 2}", "{name: dwa, interval: 0.05}", "{name: apf, patience: 2}", "vfh"],
+)
+def test_settings_that_may_be_meant_are_not_told(planner: str, tmp_path: Path) -> None:
+    assert warnings_of(f"{HEAD}planner: {planner}\n", tmp_path) == []
+
+
+def test_a_planner_whose_package_is_missing_is_told_with_how_to_get_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = importlib.machinery.ModuleSpec("navground", None)
+    for spec, told in ((None, 1), (found, 0)):
+        monkeypatch.setattr(importlib.util, "find_spec", lambda name, spec=spec: spec)
+        lines = warnings_of(f"{HEAD}planner: navground\n", tmp_path)
+        assert len(lines) == told
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    (line,) = warnings_of(f"{HEAD}planner: navground\n", tmp_path)
+    assert line == (
+        "4: planner: a run would fail: the package navground is not installed: "
+        "pip install 'fuzzyq_bullet[peers]'"
+    )

@@ -125,6 +125,17 @@ def test_beside_who_goes_straight_on_it_slows_down_because_he_may_turn():
     assert limited.speed < 0.3
 
 
+def test_who_brakes_before_one_that_comes_from_behind_goes_on_as_it_was_safe_last():
+    guard, flees, brakes = Guard(), TwistCommand(0.6, 0.0), TwistCommand(0.0, 0.0)
+    for k in range(13):
+        seen = reading(0.05 * k, (0.0, 0.0), [pillar(-0.65 - 0.02 * (11 - k), 0.0)])
+        seen = replace(seen, motion=MOTION, speed=0.4)
+        limited, _ = guard.limit_twist(flees if k < 12 else brakes, seen, MOTION)
+        if k == 11:
+            assert limited == flees
+    assert limited == flees
+
+
 def one_that_moves(place, velocity, standing=()):
     """Return the traffic of one point that goes straight on."""
     speed = np.array([math.hypot(*velocity)])
