@@ -26,7 +26,7 @@ from fuzzyq_bullet.geometry import Field as Obstacles
 from fuzzyq_bullet.moving import checked_poses, clearance_of, poses_of
 from fuzzyq_bullet.planning.commands import COMMAND_FIELDS, command_arrays
 from fuzzyq_bullet.planning.controllers import fields_of, fields_with
-from fuzzyq_bullet.planning.decision import FIELDS, RARE_FIELDS, Decision
+from fuzzyq_bullet.planning.decision import FIELDS, RARE_FIELDS, Decision, rare_arrays
 from fuzzyq_bullet.planning.registry import planner_names
 from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.record_checks import check_collision, check_order, mistake_in_record
@@ -199,7 +199,7 @@ class Trajectory:
                     name: array_of(column, [getattr(decision, name) for _, decision in decisions])
                     for name, column in fields_of(scenario.planner).items()
                 },
-                **_rare_arrays([decision for _, decision in decisions]),
+                **rare_arrays([decision for _, decision in decisions]),
                 **command_arrays(twists or {}, len(decisions)),
             ),
             movers=poses,
@@ -321,15 +321,6 @@ class Trajectory:
             if array is not None  # what this run has not
         }
         return {**arrays, "movers.poses": self.movers} if self.movers.size else arrays
-
-
-def _rare_arrays(decisions: Sequence[Decision]) -> dict[str, Floats]:
-    """Return the columns of what is recorded only if it happens; none if nothing of it did."""
-    return {
-        name: array_of(column, values)
-        for name, column in RARE_FIELDS.items()
-        if any(values := [getattr(decision, name) for decision in decisions])
-    }
 
 
 def _columns_in(planner: PlannerSettings, arrays: Mapping[str, Any]) -> Columns:

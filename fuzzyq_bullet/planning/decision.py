@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.columns import Column, Columns, columns_of, documented
+from fuzzyq_bullet.columns import Column, Columns, array_of, columns_of, documented
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 Numbers: TypeAlias = Sequence[float] | NDArray[np.float64]
@@ -122,6 +122,15 @@ RARE_FIELDS: Columns = {
 """What is recorded besides, if it happens in a run: the record of any other run has no such column.
 """
 Decision.__doc__ = documented(Decision.__doc__, {**FIELDS, **RARE_FIELDS})
+
+
+def rare_arrays(decisions: Sequence[Decision]) -> dict[str, NDArray[np.float64]]:
+    """Return the columns of ``RARE_FIELDS``, a row for each decision; none of what never happens."""
+    return {
+        name: array_of(column, values)
+        for name, column in RARE_FIELDS.items()
+        if any(values := [getattr(decision, name) for decision in decisions])
+    }
 
 
 class DecisionError(ValueError):
