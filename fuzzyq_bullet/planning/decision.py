@@ -125,7 +125,7 @@ Decision.__doc__ = documented(Decision.__doc__, {**FIELDS, **RARE_FIELDS})
 
 
 def rare_arrays(decisions: Sequence[Decision]) -> dict[str, NDArray[np.float64]]:
-    """Return the columns of ``RARE_FIELDS``, a row for each decision; none of what never happens."""
+    """Return the columns of ``RARE_FIELDS``, a row for each; none of what never happens."""
     return {
         name: array_of(column, values)
         for name, column in RARE_FIELDS.items()

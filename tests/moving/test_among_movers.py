@@ -110,7 +110,7 @@ def test_where_all_stands_it_does_not_look_around():
 @pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.3, 0.45])
 def test_whom_it_meets_in_a_corridor_it_gets_out_of_the_way_backward(speed):
-    # The box fills the corridor and stops for nobody; before it turns it comes as far as x = 2.45 m.
+    # The box fills the corridor. It turns only when it has come as far as x = 2.45 m.
     on = {"kind": "patrol", "points": [(2.6, 0.75), (6.0, 0.75)], "speed": speed}
     corridor = {
         "arena": {"size": (8.0, 1.5)},

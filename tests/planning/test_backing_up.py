@@ -36,13 +36,20 @@ class Wanders:
 
 
 class Backs:
-    """Backs up along a heading, as far as a reach."""
+    """Backs up along a heading."""
 
-    def __init__(self, heading: float, reach: float = math.inf) -> None:
-        self.decision = Decision(heading, 0.2, reach, backward=True)
+    def __init__(self, heading: float) -> None:
+        self.decision = Decision(heading, 0.2, backward=True)
 
     def decide(self, _: Observation, /) -> Decision:
         return self.decision
+
+
+class Filtered(Backs):
+    """Backs up as far as the safety filter lets it."""
+
+    def decide(self, observation: Observation, /) -> Decision:
+        return safety_filter(self.decision, observation)
 
 
 def limited(scenario: Scenario, time: float) -> Scenario:
@@ -78,13 +85,6 @@ def test_it_backs_up_to_the_wall_and_stops_before_it(latency: float) -> None:
     assert backed_up(record) > 0.5
     assert 0.0 < record.ticks.clearance[-1] < 0.15
     assert abs(record.ticks.speed[-1]) < 0.01
-
-
-class Filtered(Backs):
-    """Backs up as far as the safety filter lets it."""
-
-    def decide(self, observation: Observation, /) -> Decision:
-        return safety_filter(self.decision, observation)
 
 
 def test_the_wheels_turn_the_back_to_the_heading() -> None:
