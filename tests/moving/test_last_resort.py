@@ -1,0 +1,47 @@
+"""Where nothing is passively safe the robot brakes, unless going on leads clear."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from fuzzyq_bullet import Decision
+from fuzzyq_bullet.planning.base import Motion
+from fuzzyq_bullet.planning.traffic.avoidance import TrafficAvoidance
+from tests.moving.test_tracking import PERIOD, pillar, reading
+
+SPEED, COMES = 0.5, 0.3
+MOTION = Motion(
+    max_speed=0.6, max_turn_rate=2.5, acceleration=1.0, turn_acceleration=8.0, period=0.05,
+    radius=0.2, margin=0.02,
+)  # fmt: skip
+ON = Decision(0.0, 0.4, reach=0.9, guard=0.95)
+
+
+def after_a_while(side: float, gap: float) -> Decision:
+    """Return what becomes of a decision to go on, when an obstacle has come so near (m).
+
+    It comes from a side (rad) straight to the robot, that drives along x.
+    """
+    avoidance = TrafficAvoidance()
+    away = math.cos(side), math.sin(side)
+    for k in range(-12, 1):
+        robot = SPEED * k * PERIOD, 0.0
+        apart = gap + 0.2 + 0.25 - COMES * k * PERIOD
+        there = apart * away[0], apart * away[1]
+        seen = reading(k * PERIOD, robot, [pillar(*there)])
+        observation = replace(seen, speed=SPEED, motion=MOTION)
+        avoidance.update(observation)
+    return avoidance.limit(ON, observation)
+
+
+@pytest.mark.parametrize("side", [100.0, -100.0])
+def test_it_drives_on_before_one_that_comes_from_beside_it(side: float) -> None:
+    assert after_a_while(math.radians(side), 0.06).reach == ON.reach
+
+
+@pytest.mark.parametrize("side", [0.0, 30.0, -30.0])
+def test_it_brakes_before_one_that_it_would_run_into(side: float) -> None:
+    assert after_a_while(math.radians(side), 0.06).reach == 0.0
