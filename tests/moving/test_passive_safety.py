@@ -51,5 +51,5 @@ def test_it_brakes_before_one_that_it_would_run_into(side: float) -> None:
 
 def test_a_robot_that_backs_up_minds_what_comes_from_behind_and_not_from_ahead() -> None:
     back = ON._replace(heading=math.pi, backward=True)
-    assert after_a_while(math.pi, 0.1, back, speed=0.0).reach == 0.0
-    assert after_a_while(0.0, 0.1, back, speed=0.0).reach == back.reach
+    assert after_a_while(math.pi, 0.2, back, speed=-0.2).reach < 0.05
+    assert after_a_while(0.0, 0.2, back, speed=-0.2).reach == back.reach
