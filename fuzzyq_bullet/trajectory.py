@@ -26,7 +26,7 @@ from fuzzyq_bullet.geometry import Field as Obstacles
 from fuzzyq_bullet.moving import checked_poses, clearance_of, poses_of
 from fuzzyq_bullet.planning.commands import COMMAND_FIELDS, command_arrays
 from fuzzyq_bullet.planning.controllers import fields_of, fields_with
-from fuzzyq_bullet.planning.decision import FIELDS, Decision
+from fuzzyq_bullet.planning.decision import FIELDS, RARE_FIELDS, Decision, rare_arrays
 from fuzzyq_bullet.planning.registry import planner_names
 from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.record_checks import check_collision, check_order, mistake_in_record
@@ -75,6 +75,8 @@ DECISIONS = {
     **FIELDS,
 }
 """All columns of a record: a row of ``TICKS`` for each tick, of ``DECISIONS`` for each decision."""
+OPTIONAL: Columns = {**RARE_FIELDS, **COMMAND_FIELDS}
+"""Columns of the decisions that only some runs have."""
 Ticks.__doc__ = with_columns(Ticks.__doc__, TICKS)
 _DECISIONS_DOC = "Every decision of the planner, with all that explains it: D rows in each array."
 
@@ -91,7 +93,7 @@ else:
         "Decisions",
         [
             *((name, NDArray) for name in DECISIONS),
-            *((name, NDArray | None, field(default=None)) for name in COMMAND_FIELDS),
+            *((name, NDArray | None, field(default=None)) for name in OPTIONAL),
         ],
         frozen=True,
         eq=False,
@@ -197,6 +199,7 @@ class Trajectory:
                     name: array_of(column, [getattr(decision, name) for _, decision in decisions])
                     for name, column in fields_of(scenario.planner).items()
                 },
+                **rare_arrays([decision for _, decision in decisions]),
                 **command_arrays(twists or {}, len(decisions)),
             ),
             movers=poses,
@@ -315,7 +318,7 @@ class Trajectory:
             f"{group}.{name}": array
             for group in ("ticks", "decisions")
             for name, array in vars(getattr(self, group)).items()
-            if array is not None  # what no planner but those that answer with twists has
+            if array is not None  # what this run has not
         }
         return {**arrays, "movers.poses": self.movers} if self.movers.size else arrays
 
@@ -325,9 +328,7 @@ def _columns_in(planner: PlannerSettings, arrays: Mapping[str, Any]) -> Columns:
 
     Of one that is not registered here nothing is known; its labels are numbers then.
     """
-    more = {
-        name: column for name, column in COMMAND_FIELDS.items() if f"decisions.{name}" in arrays
-    }
+    more = {name: column for name, column in OPTIONAL.items() if f"decisions.{name}" in arrays}
     rules = arrays.get("decisions.rules")
     known = planner.name in planner_names()
     if known or rules is None or rules.ndim != 3 or rules.shape[1:] == DECISIONS["rules"].shape:

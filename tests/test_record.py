@@ -17,8 +17,8 @@ import pytest
 
 from fuzzyq_bullet import Decision, Trajectory
 from fuzzyq_bullet.columns import Columns
-from fuzzyq_bullet.planning.commands import COMMAND_FIELDS
-from fuzzyq_bullet.trajectory import DECISIONS, TICKS, Decisions, Ticks
+from fuzzyq_bullet.planning.decision import RARE_FIELDS
+from fuzzyq_bullet.trajectory import DECISIONS, OPTIONAL, TICKS, Decisions, Ticks
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "record.md"
 GROUPS = {"ticks": TICKS, "decisions": DECISIONS}
@@ -56,7 +56,7 @@ def test_the_page_about_the_record_is_what_is_declared() -> None:
 
 
 def test_every_field_of_a_decision_but_hopeless_is_recorded() -> None:
-    assert [*Decision._fields] == [*list(DECISIONS)[1:], "hopeless"]
+    assert [*Decision._fields] == [*list(DECISIONS)[1:], "hopeless", *RARE_FIELDS]
     assert Decision.__doc__ is not None
     assert all(f"\n    {name}" in Decision.__doc__ for name in list(DECISIONS)[1:])
 
@@ -67,7 +67,7 @@ def test_the_arrays_are_what_is_declared(record: Trajectory) -> None:
         (Decisions, record.decisions, DECISIONS),
     ):
         names = [column.name for column in fields(kind)]  # type: ignore[arg-type]
-        assert [name for name in names if name not in COMMAND_FIELDS] == list(columns)
+        assert [name for name in names if name not in OPTIONAL] == list(columns)
         for name, column in columns.items():
             array = getattr(held, name)
             assert (array.dtype, array.shape[1:]) == (column.dtype, column.shape)

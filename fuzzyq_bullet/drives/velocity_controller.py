@@ -48,6 +48,8 @@ class VelocityController:
             travelled: Path driven since the decision (m), by which its reach has shrunk.
         """
         robot = self._robot
+        if decision.backward:
+            heading += math.pi
         error = wrap_angle(decision.heading - heading)
         turn_rate = self.turn_rate(error)
         speed = min(
@@ -59,7 +61,7 @@ class VelocityController:
             # A fast robot slows down for a turn: its tyres would not hold it on so tight an arc.
             GRIP / abs(turn_rate) if turn_rate else math.inf,
         )
-        return Twist(speed, turn_rate)
+        return Twist(-speed if decision.backward else speed, turn_rate)
 
     def turn_rate(self, error: float) -> float:
         """Return the turn rate to aim for (rad/s) at an error of the heading (rad)."""

@@ -116,7 +116,7 @@ class WheelsDriver(Driver):
         for _ in range(self._decision_ticks):
             before = self.ticks[-1]
             believed = before.heading + self._localiser.error(before.time).heading
-            turning, ahead = before.turn_rate * self._latency, before.speed * self._latency
+            turning, ahead = before.turn_rate * self._latency, abs(before.speed) * self._latency
             wanted = (
                 self._in_the_end(before)
                 if self._in_goal(before)

@@ -24,6 +24,7 @@ class Aim(NamedTuple):
         reach: How far the robot may move before it decides again (m).
         target: The temporary goal that it lies on the way to (m); NaN for the goal.
         hopeless: Whether no way is left to try.
+        backward: Whether the robot backs up towards it.
     """
 
     point: Point
@@ -34,6 +35,7 @@ class Aim(NamedTuple):
     reach: float = math.inf
     target: Point = NOWHERE
     hopeless: bool = False
+    backward: bool = False
 
     def told(self) -> dict[str, Any]:
         """Return what a decision on the way there tells of it, by the decision's fields."""
@@ -44,6 +46,7 @@ class Aim(NamedTuple):
             "aim": self.point,
             "exact": float(self.exact),
             "hopeless": self.hopeless,
+            "backward": self.backward,
         }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from numbers import Real
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
@@ -220,6 +220,13 @@ class Observation:
             ValueError: If a heading is no finite number, or there are more than 1000.
         """
         return self.sensor.look(headings)
+
+    def backwards(self) -> Observation:
+        """Return what is observed if the robot's back is taken for its front.
+
+        What holds for a robot that drives forward then holds for one that backs up.
+        """
+        return replace(self, heading=self.heading + math.pi, speed=-self.speed)
 
     @property
     def slowness(self) -> float:

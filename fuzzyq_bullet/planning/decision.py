@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.columns import Column, Columns, columns_of, documented
+from fuzzyq_bullet.columns import Column, Columns, array_of, columns_of, documented
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 Numbers: TypeAlias = Sequence[float] | NDArray[np.float64]
@@ -40,9 +40,11 @@ def _told(unit: str, meaning: str, *axes: tuple[str, ...]) -> Column:
 class Decision(NamedTuple):
     """Where to go next, and everything a picture needs to show why.
 
-    Only ``heading``, ``step`` and ``reach`` move the robot. The rest explains the decision; a
-    planner without fuzzy sets leaves it at its blank (NaN) default. The episode ends as ``stuck``
-    with a decision that is ``hopeless``: the planner knows that it cannot go on.
+    Only ``heading``, ``step``, ``reach`` and ``backward`` move the robot. The rest explains the
+    decision; a planner without fuzzy sets leaves it at its blank (NaN) default. The episode ends as
+    ``stuck`` with a decision that is ``hopeless``: the planner knows that it cannot go on. With
+    ``backward`` the wheels turn the robot's back to the heading and back up along it; the point
+    robot, which faces any way at once, just goes there.
     """
 
     heading: Annotated[
@@ -107,11 +109,28 @@ class Decision(NamedTuple):
         _told("", "1 where it aims at a gap exactly, without the rules; 0 where they turn it."),
     ] = _NAN
     hopeless: bool = False
+    backward: bool = False
 
 
 FIELDS = columns_of(Decision)
 """All that is recorded of a decision, by name."""
-Decision.__doc__ = documented(Decision.__doc__, FIELDS)
+RARE_FIELDS: Columns = {
+    "backward": Column(
+        "", "1 where the robot backs up along the heading, 0 where it drives forward.", blank=True
+    )
+}
+"""What is recorded besides, if it happens in a run: the record of any other run has no such column.
+"""
+Decision.__doc__ = documented(Decision.__doc__, {**FIELDS, **RARE_FIELDS})
+
+
+def rare_arrays(decisions: Sequence[Decision]) -> dict[str, NDArray[np.float64]]:
+    """Return the columns of ``RARE_FIELDS``, a row for each; none of what never happens."""
+    return {
+        name: array_of(column, values)
+        for name, column in RARE_FIELDS.items()
+        if any(values := [getattr(decision, name) for decision in decisions])
+    }
 
 
 class DecisionError(ValueError):
@@ -148,8 +167,9 @@ def checked(decision: Any, fields: Columns = FIELDS) -> Decision:
         else:
             blank = value is Decision._field_defaults.get(name)
             told[name] = _blank(column.shape) if blank else _explaining(name, value, column.shape)
-    if not isinstance(decision.hopeless, bool | np.bool_):
-        raise DecisionError(f"decided hopeless {_shown(decision.hopeless)}, not True or False")
+    for name in ("hopeless", "backward"):
+        if not isinstance(flag := getattr(decision, name), bool | np.bool_):
+            raise DecisionError(f"decided {name} {_shown(flag)}, not True or False")
     return decision._replace(**told)
 
 

@@ -203,18 +203,8 @@ class Escape:
             self._scan(observation)
             self._mode = "following"
         wait = towards_goal(observation)._replace(mode=self._mode, reach=0.0)
-        if observation.closing_speed == 0.0:
-            return wait._replace(hopeless=True)
-        self._reset()  # what was in the way may have moved
-        return wait
-
-    def _reset(self) -> None:
-        """Forget all that was explored and tried: among moving obstacles it may be out of date."""
-        judge, self._graph = self._graph.judge, ExplorationGraph()
-        self._graph.judge = judge
-        self._frontier, self._follower = None, PathFollower([])
-        self._failed, self._left = [], []
-        self._on_open_path = self._distrusts_map = False
+        # Among what moves it waits: what is in the way may move off.
+        return wait._replace(hopeless=observation.closing_speed == 0.0)
 
     def _along(self, segment: Segment, observation: Observation, tried: Frontier) -> Aim:
         """Aim along the next segment of the way to a frontier, or of an open path."""

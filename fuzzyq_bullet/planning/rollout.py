@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from fuzzyq_bullet.planning.base import Floats, Motion, Observation
+from fuzzyq_bullet.planning.base import Flags, Floats, Motion, Observation
 
 TURN_GAIN = 4.0
 """Turn rate for a heading error of 1 rad (1/s)."""
@@ -27,6 +27,7 @@ def rollout(
     seconds: float,
     dt: float,
     brakes_after: Floats | float = math.inf,
+    backward: Flags | bool = False,
 ) -> Floats:
     """Return the positions of the robot's centre (m) every ``dt`` seconds, shape (S + 1, C, 2).
 
@@ -43,12 +44,15 @@ def rollout(
         seconds: For how long.
         dt: Time step (s).
         brakes_after: When each candidate begins to brake (s).
+        backward: Whether each candidate backs up.
     """
     count, steps = len(headings), math.ceil(seconds / dt - 1e-9)
     x = np.full(count, observation.position[0])
     y = np.full(count, observation.position[1])
-    facing = np.full(count, observation.heading)
-    speed, rate = np.full(count, observation.speed), np.full(count, observation.turn_rate)
+    # The back of a robot that backs up is taken for its front.
+    facing = observation.heading + np.where(np.broadcast_to(backward, count), math.pi, 0.0)
+    speed = observation.speed * np.where(np.broadcast_to(backward, count), -1.0, 1.0)
+    rate = np.full(count, observation.turn_rate)
     driven = np.zeros(count)
     positions = np.empty((steps + 1, count, 2))
     positions[0] = observation.position

@@ -15,6 +15,8 @@ NARROW = math.radians(0.3)
 """A turn up to this counts as none (rad): one corridor covers both headings."""
 SAME = math.radians(0.3)
 """A line that was cast already serves for all headings as near to it as this (rad)."""
+ROLLS = 0.05
+"""A robot that rolls faster than this (m/s) the other way must stop first."""
 WIDEST = math.radians(90.0)
 """The robot stops before it has turned further than this (rad)."""
 
@@ -25,11 +27,23 @@ def safety_filter(decision: Decision, observation: Observation) -> Decision:
     The paper's point robot faces the new heading at once: one corridor along it caps its step. On
     wheels the reach is capped, from which the speed follows, and the turn if necessary.
     """
-    if observation.motion is not None:
-        return _filtered_on_wheels(decision, observation, observation.motion)
+    motion = observation.motion
+    if motion is not None:
+        driven = observation.backwards() if decision.backward else observation
+        if driven.speed < -ROLLS:
+            return _brakes(decision, driven)
+        return _filtered_on_wheels(decision, driven, motion)
     [free] = observation.sense([decision.heading])
     usable = free - RESERVE - observation.uncertainty
     return decision._replace(step=max(0.0, min(decision.step, usable)), guard=free)
+
+
+def _brakes(decision: Decision, observation: Observation) -> Decision:
+    """Return the decision of a robot that still rolls the other way: it stops as it is.
+
+    That way was found free by the decision before.
+    """
+    return decision._replace(heading=observation.heading, reach=0.0, guard=0.0)
 
 
 def _filtered_on_wheels(decision: Decision, observation: Observation, motion: Motion) -> Decision:

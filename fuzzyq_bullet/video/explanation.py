@@ -198,8 +198,10 @@ def _ends(trajectory: Trajectory, index: int) -> str:
 def _makes_way(trajectory: Trajectory, index: int) -> str:
     """Return that the robot waits for what comes, or gives way to it, if it does."""
     decisions, tick = trajectory.decisions, int(trajectory.decisions.tick[index])
-    if gives_way(trajectory, index) and float(decisions.reach[index]) >= _STANDS:
-        return f"{approaching(trajectory, tick) or 'Something moves near by'}: gives way"
+    backs_up = decisions.backward is not None and bool(decisions.backward[index])
+    if (backs_up or gives_way(trajectory, index)) and float(decisions.reach[index]) >= _STANDS:
+        coming = approaching(trajectory, tick) or "Something moves near by"
+        return f"{coming}: {'backs up' if backs_up else 'gives way'}"
     if min(float(decisions.step[index]), float(decisions.reach[index])) >= _STANDS:
         return ""
     coming = approaching(trajectory, tick)

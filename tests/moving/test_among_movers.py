@@ -105,3 +105,24 @@ def test_where_all_stands_it_does_not_look_around():
         assert planner.decide(told) == planner_of(scenario).decide(observation)
         with pytest.raises(AssertionError, match="looked around"):
             planner.decide(replace(told, closing_speed=0.5))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [0.3, 0.45])
+def test_whom_it_meets_in_a_corridor_it_gets_out_of_the_way_backward(speed):
+    # The box fills the corridor. It turns only when it has come as far as x = 2.45 m.
+    on = {"kind": "patrol", "points": [(2.6, 0.75), (6.0, 0.75)], "speed": speed}
+    corridor = {
+        "arena": {"size": (8.0, 1.5)},
+        "start": {"position": (2.0, 0.75)},
+        "goal": {"position": (7.0, 0.75)},
+        "limits": {"time": 10.0},
+        "obstacles": [
+            {"shape": "box", "position": (4.5, 0.75), "size": (0.3, 1.2), "motion": on},
+        ],
+    }
+    trajectory = run(Scenario.model_validate({**walk(on, (4.5, 0.75)).model_dump(), **corridor}))
+    assert trajectory.outcome == "timeout"
+    assert trajectory.ticks.speed.min() < -0.2
+    told = [reason(trajectory, k) for k in range(len(trajectory.decisions.tick))]
+    assert "A moving obstacle comes from ahead: backs up" in told

@@ -1,5 +1,6 @@
 """What a planner does about moving obstacles: tracking, giving way, passive safety.
 
 ``lidar_scan`` and ``tracker`` find what moves, ``track`` and ``circle_fit`` describe it,
-``give_way`` plans a detour, ``passive_safety`` limits the speed; ``avoidance`` joins them.
+``candidates`` are motions of the robot and what they come to, ``give_way`` chooses a detour,
+``passive_safety`` limits the speed; ``avoidance`` joins them.
 """

@@ -60,7 +60,13 @@ class PassiveSafety:
     """
 
     def __init__(self) -> None:
-        self._way_out: float | None = None  # world heading (rad)
+        # World heading (rad), and whether the robot backs up.
+        self._way_out: tuple[float, bool] | None = None
+
+    @property
+    def has_way_out(self) -> bool:
+        """Whether the latest decision was passively safe."""
+        return self._way_out is not None
 
     def limit(self, decision: Decision, observation: Observation, traffic: Traffic) -> Decision:
         """Return the decision, limited so that the robot is passively safe.
@@ -73,19 +79,27 @@ class PassiveSafety:
         motion = observation.motion
         if motion is None:
             return decision._replace(step=_safe_step(decision, observation, traffic))
-        speed = safe_speed(decision.heading, decision.reach, observation, motion, traffic)
+        speed = _speed(decision, observation, motion, traffic)
         if speed is None and self._way_out is not None:
-            step = LONGEST_STRIDE * observation.unit
-            out = decision._replace(heading=self._way_out, step=step, reach=math.inf)
+            step, (heading, backward) = LONGEST_STRIDE * observation.unit, self._way_out
+            out = decision._replace(heading=heading, step=step, reach=math.inf, backward=backward)
             out = safety_filter(out, observation)
-            speed = safe_speed(out.heading, out.reach, observation, motion, traffic)
+            speed = _speed(out, observation, motion, traffic)
             decision = decision if speed is None else out
-        self._way_out = None if speed is None else decision.heading
+        self._way_out = None if speed is None else (decision.heading, decision.backward)
         if speed == math.inf:
             return decision
         delay = motion.period + motion.latency
         reach = speed * delay + motion.way_to_stop(speed) if speed else 0.0
         return decision._replace(reach=min(decision.reach, reach))
+
+
+def _speed(
+    decision: Decision, observation: Observation, motion: Motion, traffic: Traffic
+) -> float | None:
+    """Return the greatest passively safe speed (m/s) of a decision; see ``safe_speed``."""
+    driven = observation.backwards() if decision.backward else observation
+    return safe_speed(decision.heading, decision.reach, driven, motion, traffic)
 
 
 def safe_speed(

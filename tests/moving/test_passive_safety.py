@@ -1,0 +1,55 @@
+"""Passive safety looks where the robot drives, and knows what to do where nothing is safe."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from fuzzyq_bullet import Decision
+from fuzzyq_bullet.planning.base import Motion
+from fuzzyq_bullet.planning.traffic.avoidance import TrafficAvoidance
+from tests.moving.test_tracking import PERIOD, pillar, reading
+
+SPEED, COMES = 0.5, 0.3
+MOTION = Motion(
+    max_speed=0.6, max_turn_rate=2.5, acceleration=1.0, turn_acceleration=8.0, period=0.05,
+    radius=0.2, margin=0.02,
+)  # fmt: skip
+ON = Decision(0.0, 0.4, reach=0.9, guard=0.95)
+
+
+def after_a_while(
+    side: float, gap: float, decision: Decision = ON, speed: float = SPEED
+) -> Decision:
+    """Return what becomes of a decision when an obstacle has come so near (m).
+
+    It comes from a side (rad) straight to the robot, which drives along x at a speed (m/s).
+    """
+    avoidance = TrafficAvoidance()
+    away = math.cos(side), math.sin(side)
+    for k in range(-12, 1):
+        robot = speed * k * PERIOD, 0.0
+        apart = gap + 0.2 + 0.25 - COMES * k * PERIOD
+        there = apart * away[0], apart * away[1]
+        seen = reading(k * PERIOD, robot, [pillar(*there)])
+        observation = replace(seen, speed=speed, motion=MOTION)
+        avoidance.update(observation)
+    return avoidance.limit(decision, observation)
+
+
+@pytest.mark.parametrize("side", [100.0, -100.0])
+def test_it_drives_on_before_one_that_comes_from_beside_it(side: float) -> None:
+    assert after_a_while(math.radians(side), 0.06).reach == ON.reach
+
+
+@pytest.mark.parametrize("side", [0.0, 30.0, -30.0])
+def test_it_brakes_before_one_that_it_would_run_into(side: float) -> None:
+    assert after_a_while(math.radians(side), 0.06).reach == 0.0
+
+
+def test_a_robot_that_backs_up_minds_what_comes_from_behind_and_not_from_ahead() -> None:
+    back = ON._replace(heading=math.pi, backward=True)
+    assert after_a_while(math.pi, 0.2, back, speed=-0.2).reach < 0.05
+    assert after_a_while(0.0, 0.2, back, speed=-0.2).reach == back.reach
