@@ -10,6 +10,7 @@ import csv
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from inspect import cleandoc
 from itertools import product
 from typing import Any, TypeAlias, get_type_hints
@@ -21,7 +22,7 @@ FAR = 1e7
 """No position (m), angle (rad), speed or other number of a run comes near this."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Column:
     """What one column of a record holds.
 
@@ -48,7 +49,7 @@ class Column:
     whole: bool = False
     words: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """Shape of one entry; () for a plain number."""
         return tuple(map(len, self.axes))

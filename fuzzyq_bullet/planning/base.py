@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from numbers import Real
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.planning.decision import Numbers
+from fuzzyq_bullet.planning.decision import NUMBER, Numbers
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.planning.commands import Answer
@@ -154,7 +153,7 @@ def _check(headings: Sequence[float]) -> None:
     if len(headings) > MOST_HEADINGS:
         raise ValueError(f"{len(headings)} headings at once; at most {MOST_HEADINGS} are allowed")
     for heading in headings:
-        if not isinstance(heading, Real) or not math.isfinite(heading):
+        if not isinstance(heading, NUMBER) or not math.isfinite(heading):
             raise ValueError(f"a heading must be a finite number, got {heading!r:.60}")
 
 

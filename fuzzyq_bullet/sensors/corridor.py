@@ -152,11 +152,8 @@ class CorridorSensor:
             for start, end, ahead in self._rays:
                 starts.append((x + start * sin, y - start * cos, z))
                 ends.append((x + (ahead * cos + end * sin), y + (ahead * sin - end * cos), z))
-        count = len(headings)
-        lengths = self._told(
-            starts, ends, np.tile(self._lengths, count), np.tile(self._aside, count)
-        )
-        lengths = lengths.reshape(count, -1)
+        lengths = self._told(starts, ends, self._lengths, self._aside)
+        lengths = lengths.reshape(len(headings), -1)
         rays, probes = lengths[:, :-2], lengths[:, -2:]
         rays[:, -2:][probes < np.inf] = np.inf
         # A free line is exactly as long as the range, not rounded.
@@ -179,8 +176,7 @@ class CorridorSensor:
         reach = self.range + self.radius
         (x, y), z = origin, self._height
         ends = [(x + reach * math.cos(one), y + reach * math.sin(one), z) for one in headings]
-        count = len(ends)
-        lengths = self._told([(x, y, z)] * count, ends, np.full(count, reach), np.zeros(count))
+        lengths = self._told([(x, y, z)] * len(ends), ends, np.array([reach]), np.zeros(1))
         return np.minimum(lengths, reach)
 
     def _told(
@@ -188,10 +184,17 @@ class CorridorSensor:
     ) -> Floats:
         """Return the measured length (m) of each ray, infinite where nothing is met.
 
-        Every ray of the robot passes here. ``aside`` is how far from its centre they begin (m).
+        Every ray of the robot passes here.
+
+        Args:
+            starts: Where the rays start (m), those of one line after those of another.
+            ends: Where they end (m).
+            lengths: How long the rays of each line are (m), shape (R,).
+            aside: How far from the robot's centre they begin (m), shape (R,).
         """
-        free = np.array(self._cast(starts, ends))
-        lengths = free * lengths
-        lengths[free >= 1.0] = np.inf
-        told = self._model.measured(lengths, self._rng)
-        return told if self._noise is None else self._noise.disturbed(told, aside)
+        free = np.array(self._cast(starts, ends)).reshape(-1, lengths.size)
+        met = np.where(free < 1.0, free * lengths, np.inf).ravel()
+        told = self._model.measured(met, self._rng)
+        if self._noise is None:
+            return told
+        return self._noise.disturbed(told, np.tile(aside, len(free)))
