@@ -24,6 +24,8 @@ GRAIN = 0.03
 """Hits no farther apart than about this are one (m)."""
 NARROWER = 1.0
 """How many cells narrower than the disc the cells of an open path may be."""
+SPARE = 0.5
+"""With so little room on either side, in cells, a gap is tight."""
 THICK = 0.71
 """How far from the middle of a gap that is too narrow the cells are closed, in cells."""
 MOST = 50_000
@@ -124,7 +126,7 @@ class ObstacleMap:
         if least <= 0.0:
             return None
         hits = self._points
-        grid.cover(hits, self._radius)
+        grid.cover(hits, self._radius + SPARE * grid.cell)
         tight = ~grid.free
         grid.free[:] = True
         grid.cover(hits, least)

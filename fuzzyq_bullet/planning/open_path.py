@@ -14,19 +14,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.occupancy import SIXTEEN, OccupancyGrid
+from fuzzyq_bullet.planning.base import USUAL_SPEED
 from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
 from fuzzyq_bullet.planning.scan import Point
 
-TIGHT = 3.0
-"""What a metre costs where the disc only just fits, or does not."""
+TIGHT_SPEED = 0.2
+"""How fast any robot gets through a gap that is hardly wider than itself (m/s), turning on the spot
+included: at full speed it could go so much farther instead."""
 OWN_CELLS = 1
 """So many cells on each side of the robot's own are free, because it stands there."""
 POINT_EVERY = 3
 """One of so many cells of the path becomes a point of it."""
 
 
-def open_path(obstacles: ObstacleMap, start: Point, goal: Point) -> list[Point] | None:
+def open_path(
+    obstacles: ObstacleMap, start: Point, goal: Point, speed: float = USUAL_SPEED
+) -> list[Point] | None:
     """Return the points (m) of the path, from the start to the goal.
+
+    Args:
+        obstacles: What was seen.
+        start: Where the path begins (m).
+        goal: Where it ends (m).
+        speed: Greatest speed of the robot (m/s).
 
     Returns:
         None if the known obstacles leave no path.
@@ -42,7 +52,7 @@ def open_path(obstacles: ObstacleMap, start: Point, goal: Point) -> list[Point] 
         slice(row - OWN_CELLS, row + OWN_CELLS + 1),
     )
     grid.free[beside] = True
-    price = np.where(tight, TIGHT, 1.0)
+    price = np.where(tight, max(1.0, speed / TIGHT_SPEED), 1.0)
     cells = grid.path((column, row), (goal_column, goal_row), SIXTEEN, price)
     if cells is None:
         return None
