@@ -22,12 +22,14 @@ TIGHT = 3.0
 NO_HITS = np.zeros((0, 2))
 GRAIN = 0.03
 """Hits no farther apart than about this are one (m)."""
+CLOSE = 1e-6
 NARROWER = 1.0
 """How many cells narrower than the disc the cells of an open path may be."""
 SPARE = 0.5
 """With so little room on either side, in cells, a gap is tight."""
-THICK = 0.71
-"""How far from the middle of a gap that is too narrow the cells are closed, in cells."""
+THICK = 1.5
+"""How far from the middle of a gap that is too narrow the cells are closed, in cells: two cells deep
+wherever the disc leaves any free, so that no move of ``SIXTEEN`` jumps over them."""
 MOST = 50_000
 MARGIN = 1.0
 """How far the grid reaches beyond everything known (m)."""
@@ -119,23 +121,15 @@ class ObstacleMap:
             The grid, and in which of its cells the whole disc does not fit; None if the cells are
             as wide as the disc: then the grid would be meaningless.
         """
-        from scipy.spatial import cKDTree
-
         grid = _free_grid(_least(self._low, *points), _greatest(self._high, *points), aligned=True)
         least = self._radius - NARROWER * grid.cell
         if least <= 0.0:
             return None
-        hits = self._points
-        grid.cover(hits, self._radius + SPARE * grid.cell)
+        grid.cover(self._points, self._radius + SPARE * grid.cell)
         tight = ~grid.free
         grid.free[:] = True
-        grid.cover(hits, least)
-        pairs = cKDTree(hits).query_pairs(2.0 * self._radius, output_type="ndarray")
-        one, other = hits[pairs[:, 0]], hits[pairs[:, 1]]
-        wide = np.hypot(*(one - other).T) >= 2.0 * least
-        middles = (one[wide] + other[wide]) / 2.0
-        middles = np.unique((middles / GRAIN).round(), axis=0) * GRAIN
-        grid.cover(middles, THICK * grid.cell)
+        grid.cover(self._points, least)
+        grid.cover(_too_narrow(self._points, 2.0 * least, 2.0 * self._radius), THICK * grid.cell)
         return grid, tight
 
     def _lengths(self, goal: Point, starts: Sequence[Point], hits: Floats) -> list[float]:
@@ -174,6 +168,30 @@ def _free_grid(low: Point, high: Point, *, aligned: bool = False) -> OccupancyGr
     if aligned:
         low = math.floor(low[0] / cell) * cell, math.floor(low[1] / cell) * cell
     return OccupancyGrid.over(low, high, cell)
+
+
+def _too_narrow(hits: Floats, least: float, wide: float) -> Floats:
+    """Return the middles (m) of the gaps between two hits that are too narrow, shape (G, 2).
+
+    Args:
+        hits: Points (m), shape (H, 2).
+        least: How wide a gap is at least (m): what is narrower is closed anyway.
+        wide: From which width on (m) the disc gets through.
+
+    Returns:
+        The middles. Where a third hit closes the middle anyway, the two need not.
+    """
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(hits)
+    one, other = tree.query_pairs(wide, output_type="ndarray").T
+    places = hits[:, 0] + 1j * hits[:, 1]
+    apart = places[one] - places[other]
+    middles = (places[one] - apart / 2.0)[np.abs(apart) >= least]
+    _, first = np.unique((middles / GRAIN).round(), return_index=True)
+    found = np.column_stack([middles[first].real, middles[first].imag])
+    nearest, _ = tree.query(found, distance_upper_bound=least / 2.0 - CLOSE)
+    return found[np.isinf(nearest)]
 
 
 def _least(*points: Sequence[float]) -> Point:
