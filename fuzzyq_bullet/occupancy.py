@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,8 +89,49 @@ class OccupancyGrid:
         Returns:
             Shape (columns, rows); infinite where there is no way.
         """
-        from scipy.sparse import csr_matrix
         from scipy.sparse.csgraph import dijkstra
+
+        graph = self._graph(moves, past_corners=past_corners)
+        found = dijkstra(graph, directed=False, indices=self._number(source))
+        return np.asarray(found.reshape(self.free.shape))
+
+    def path(
+        self, start: tuple[int, int], goal: tuple[int, int], moves: Moves, price: Floats
+    ) -> list[tuple[int, int]] | None:
+        """Return the cells of the cheapest way between two cells, over free cells (Dijkstra).
+
+        Args:
+            start: Column and row of the first cell.
+            goal: Those of the last one.
+            moves: ``EIGHT`` or ``SIXTEEN``.
+            price: What a metre in each cell costs, shape (columns, rows).
+
+        Returns:
+            The cells from the start to the goal, both included; None where there is no way.
+        """
+        from scipy.sparse.csgraph import dijkstra
+
+        graph = self._graph(moves, price)
+        last = self._number(goal)
+        costs, before = dijkstra(graph, directed=False, indices=last, return_predecessors=True)
+        at = self._number(start)
+        if not np.isfinite(costs[at]):
+            return None
+        cells = [start]
+        while at != last:
+            at = int(before[at])
+            cells.append(divmod(at, self.free.shape[1]))
+        return cells
+
+    def _number(self, cell: tuple[int, int]) -> int:
+        """Return the number of a cell in the graph."""
+        return cell[0] * self.free.shape[1] + cell[1]
+
+    def _graph(
+        self, moves: Moves, price: Floats | None = None, *, past_corners: bool = False
+    ) -> Any:
+        """Return the graph of all moves between free cells, weighed by their length times price."""
+        from scipy.sparse import csr_matrix
 
         free = self.free
         columns, rows = free.shape
@@ -104,8 +145,9 @@ class OccupancyGrid:
                 both &= free[here[0], there[1]] & free[there[0], here[1]]
             starts.append(number[here][both])
             ends.append(number[there][both])
-            lengths.append(np.full(len(starts[-1]), self.cell * math.hypot(dx, dy)))
+            length = np.full(len(starts[-1]), self.cell * math.hypot(dx, dy))
+            if price is not None:
+                length *= (price[here][both] + price[there][both]) / 2.0
+            lengths.append(length)
         edges = np.concatenate(starts), np.concatenate(ends)
-        graph = csr_matrix((np.concatenate(lengths), edges), shape=(free.size, free.size))
-        found = dijkstra(graph, directed=False, indices=int(number[source]))
-        return np.asarray(found.reshape(free.shape))
+        return csr_matrix((np.concatenate(lengths), edges), shape=(free.size, free.size))

@@ -22,6 +22,14 @@ TIGHT = 3.0
 NO_HITS = np.zeros((0, 2))
 GRAIN = 0.03
 """Hits no farther apart than about this are one (m)."""
+CLOSE = 1e-6
+NARROWER = 1.0
+"""How many cells narrower than the disc the cells of an open path may be."""
+SPARE = 0.5
+"""With so little room on either side, in cells, a gap is tight."""
+THICK = 1.5
+"""How far from the middle of a gap that is too narrow the cells are closed, in cells: two cells deep
+wherever the disc leaves any free, so that no move of ``SIXTEEN`` jumps over them."""
 MOST = 50_000
 MARGIN = 1.0
 """How far the grid reaches beyond everything known (m)."""
@@ -36,7 +44,8 @@ class ObstacleMap:
         import scipy.sparse.csgraph  # noqa: F401
 
         self._ends = np.zeros((4, 0))  # rows: x and y of one end, x and y of the other
-        self._hits = NO_HITS
+        self._hits = NO_HITS  # in grains
+        self._points = NO_HITS  # one of those that were hit in each grain
         self._radius = 0.0
         self._low, self._high = (math.inf, math.inf), (-math.inf, -math.inf)
 
@@ -51,7 +60,8 @@ class ObstacleMap:
         """
         self._radius = radius
         grains = np.concatenate([self._hits, (hits / GRAIN).round()])
-        self._hits = np.unique(grains, axis=0)
+        self._hits, first = np.unique(grains, axis=0, return_index=True)
+        self._points = np.concatenate([self._points, hits])[first]
         if len(boundary):
             self._ends = np.concatenate([self._ends, boundary.reshape(-1, 4).T], axis=1)
             corners = boundary.reshape(-1, 2)
@@ -65,7 +75,8 @@ class ObstacleMap:
             seen_through: Returns which points (m), shape (K, 2), are seen to be free now: by a thin
                 ray if the second argument is 0, by the robot's disc if it is its radius (m).
         """
-        self._hits = self._hits[~seen_through(self._hits * GRAIN, 0.0)]
+        kept = ~seen_through(self._hits * GRAIN, 0.0)
+        self._hits, self._points = self._hits[kept], self._points[kept]
         middles = (self._ends[:2] + self._ends[2:]).T / 2.0
         self._ends = self._ends[:, ~seen_through(middles, self._radius)]
 
@@ -93,24 +104,33 @@ class ObstacleMap:
             costs = [a if math.isfinite(a) else b for a, b in zip(costs, narrow, strict=True)]
         return costs
 
-    def free_cells(self, points: Sequence[Point], narrower: float) -> OccupancyGrid | None:
-        """Return an occupancy grid of the points that rays have hit, grown by the disc.
+    def open_grid(self, points: Sequence[Point]) -> tuple[OccupancyGrid, Flags] | None:
+        """Return an occupancy grid on which every gap is open that the disc gets through.
+
+        Cells are free from where the disc may be one cell narrower. So no gap closes only because of
+        where the cells lie. But where two points that rays have hit are nearer to each other than
+        the disc is wide, it does not get through between them: the middle between them is closed.
 
         The grid is aligned: however much is known, its cells lie at the same places. So a cell that
         was closed once stays closed.
 
         Args:
             points: Points (m) that the grid holds.
-            narrower: How many cells narrower than the disc the free space may be.
 
         Returns:
-            None if the cells are as wide as the disc: then the grid would be meaningless.
+            The grid, and in which of its cells the whole disc does not fit; None if the cells are
+            as wide as the disc: then the grid would be meaningless.
         """
         grid = _free_grid(_least(self._low, *points), _greatest(self._high, *points), aligned=True)
-        if self._radius <= grid.cell:
+        least = self._radius - NARROWER * grid.cell
+        if least <= 0.0:
             return None
-        grid.cover(self._hits * GRAIN, self._radius - narrower * grid.cell)
-        return grid
+        grid.cover(self._points, self._radius + SPARE * grid.cell)
+        tight = ~grid.free
+        grid.free[:] = True
+        grid.cover(self._points, least)
+        grid.cover(_too_narrow(self._points, 2.0 * least, 2.0 * self._radius), THICK * grid.cell)
+        return grid, tight
 
     def _lengths(self, goal: Point, starts: Sequence[Point], hits: Floats) -> list[float]:
         points = (*starts, goal)
@@ -148,6 +168,30 @@ def _free_grid(low: Point, high: Point, *, aligned: bool = False) -> OccupancyGr
     if aligned:
         low = math.floor(low[0] / cell) * cell, math.floor(low[1] / cell) * cell
     return OccupancyGrid.over(low, high, cell)
+
+
+def _too_narrow(hits: Floats, least: float, wide: float) -> Floats:
+    """Return the middles (m) of the gaps between two hits that are too narrow, shape (G, 2).
+
+    Args:
+        hits: Points (m), shape (H, 2).
+        least: How wide a gap is at least (m): what is narrower is closed anyway.
+        wide: From which width on (m) the disc gets through.
+
+    Returns:
+        The middles. Where a third hit closes the middle anyway, the two need not.
+    """
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(hits)
+    one, other = tree.query_pairs(wide, output_type="ndarray").T
+    places = hits[:, 0] + 1j * hits[:, 1]
+    apart = places[one] - places[other]
+    middles = (places[one] - apart / 2.0)[np.abs(apart) >= least]
+    _, first = np.unique((middles / GRAIN).round(), return_index=True)
+    found = np.column_stack([middles[first].real, middles[first].imag])
+    nearest, _ = tree.query(found, distance_upper_bound=least / 2.0 - CLOSE)
+    return found[np.isinf(nearest)]
 
 
 def _least(*points: Sequence[float]) -> Point:

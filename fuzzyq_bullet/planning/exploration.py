@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import NamedTuple, TypeAlias
 
-from fuzzyq_bullet.planning.base import Floats, Observation
+from fuzzyq_bullet.planning.base import USUAL_SPEED, Floats, Observation
 from fuzzyq_bullet.planning.cost_to_go import NO_HITS, TIGHT, ObstacleMap
 from fuzzyq_bullet.planning.frontiers import (
     Frontier,
@@ -226,7 +226,9 @@ class ExplorationGraph:
         """
         if self.judge is not as_it_looks:
             return None
-        return open_path(self._obstacles, observation.position, observation.goal)
+        motion = observation.motion
+        speed = USUAL_SPEED if motion is None else motion.max_speed
+        return open_path(self._obstacles, observation.position, observation.goal, speed)
 
     def scans_from(self, here: Point) -> int:
         """Return how many scans were made within ``NEAR`` of a position (m)."""

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.planning.base import RangeSensor
+from fuzzyq_bullet.planning.base import RangeSensor, sees_far
 from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.sensors.base import SensorModel
 from fuzzyq_bullet.sensors.noise import RayNoise
@@ -35,9 +35,15 @@ larger robot or for thinner obstacles, there are more of them (``offsets``).
 WIDEST = 0.05
 """Rays are always nearer to each other than this (m): a right angle that points between two of them
 then comes no nearer than half of it unseen, which the safety filter's reserve makes up for."""
+BESIDE = 0.002
+"""So far outside the robot's own side (m) runs the last ray but one where the robot sees far. In
+the usual range it runs where it always did, which for a robot of more than 0.2 m is within its
+side: what it meets at a flat angle may then come nearer than this."""
 
 
-def offsets(half_width: float, spacing: float = WIDEST) -> Floats:
+def offsets(
+    half_width: float, spacing: float = WIDEST, side: float = float(SPREAD[-2])
+) -> Floats:
     """Return the offsets of rays on either side, as parts of a line's half width.
 
     They are those of ``SPREAD``, and as many in between as are needed.
@@ -45,9 +51,12 @@ def offsets(half_width: float, spacing: float = WIDEST) -> Floats:
     Args:
         half_width: Half the width of a line (m).
         spacing: Neighbours are less than this apart (m); taken as within ``FINEST`` and ``WIDEST``.
+        side: The last but one of ``SPREAD``.
     """
+    spread = SPREAD.copy()
+    spread[-2] = side
     spacing = min(max(spacing, FINEST), WIDEST)
-    ends = np.append(-SPREAD[0], SPREAD)
+    ends = np.append(-spread[0], spread)
     parts = (np.diff(ends) * half_width / spacing).astype(int) + 1
     parts[0] += 1 - parts[0] % 2  # odd: the rays in the middle are as many on either side
     found = [
@@ -55,7 +64,7 @@ def offsets(half_width: float, spacing: float = WIDEST) -> Floats:
         for low, high, count in zip(ends[:-1], ends[1:], parts.tolist(), strict=True)
     ]
     if parts.max() == 1:
-        return SPREAD
+        return spread
     every = np.concatenate(found)
     return np.asarray(every[every > 0.0])
 
@@ -99,7 +108,9 @@ class CorridorSensor:
         self._noise = noise
         self.radius = wide = robot.radius + SENSOR_MARGIN
         self.range = model.range_on(robot)
-        aside = wide * offsets(wide, spacing)
+        far = sees_far(self.range, robot.radius)
+        side = (robot.radius + BESIDE) / wide if far else float(SPREAD[-2])
+        aside = wide * offsets(wide, spacing, side)
         rims = np.sqrt(wide**2 - aside**2)
         self._rims = np.repeat(rims, 2)
         self._lengths = np.append(np.repeat(rims + self.range, 2), [SENSOR_MARGIN] * 2)

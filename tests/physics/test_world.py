@@ -200,7 +200,7 @@ def test_rays_are_as_near_to_each_other_as_is_asked_for(half, spacing):
     both = np.concatenate([-aside[::-1], aside])
     assert np.diff(both).max() < min(max(spacing, FINEST), WIDEST) + 1e-9
     assert np.abs(aside[:, None] - half * SPREAD).min(axis=0).max() < 1e-9
-    assert offsets(FUZZYQ.radius + SENSOR_MARGIN) is SPREAD  # the paper's robot, usual obstacles
+    assert (offsets(FUZZYQ.radius + SENSOR_MARGIN) == SPREAD).all()  # the paper's robot
 
 
 @pytest.mark.parametrize("length", [0.6, 4.0])

@@ -60,12 +60,51 @@ def test_it_leads_round_a_pocket_that_was_seen_with_room_for_the_disc():
     assert not any(1.0 < x < 2.0 and abs(y) < 1.0 for x, y in path)
 
 
-@pytest.mark.parametrize(("gap", "through"), [(0.6, True), (0.3, False)])
-def test_it_leads_through_a_gap_that_is_wide_enough(gap, through):
-    wall = ((2.0, -3.0), (2.0, -gap / 2)), ((2.0, gap / 2), (2.0, 3.0))
-    path = open_path(seen(*wall), (0.0, 0.0), (4.0, 0.0))
+def turned(point, angle, by=(0.0, 0.0)):
+    (x, y), cos, sin = point, math.cos(angle), math.sin(angle)
+    return x * cos - y * sin + by[0], x * sin + y * cos + by[1]
+
+
+SHIFTS = [(0.0, 0.0), (0.03, 0.07), (0.05, 0.02)]
+ANGLES = np.radians([0.0, 12.0, 30.0, 45.0, 77.0])
+
+
+@pytest.mark.parametrize("shift", SHIFTS)
+@pytest.mark.parametrize("angle", ANGLES)
+@pytest.mark.parametrize("wider", [0.01, -0.01])
+def test_a_gap_is_open_if_the_disc_gets_through_wherever_the_cells_lie(wider, angle, shift):
+    """Between the round ends of two walls: of an edge, the very end may not be among the hits."""
+    middle = WIDE + wider / 2 + 0.1
+    around = np.linspace(0.0, math.tau, 40)
+    ends = 0.1 * np.column_stack([np.cos(around), np.sin(around)])
+    wall = points(((0.0, -3.0), (0.0, -middle)), ((0.0, middle), (0.0, 3.0)))
+    hits = np.concatenate([wall, ends + (0.0, middle), ends - (0.0, middle)])
+    hits = np.column_stack(turned(hits.T, angle, shift))
+    obstacles = ObstacleMap()
+    obstacles.add(hits[None, :2], hits, WIDE)
+    path = open_path(obstacles, turned((-2.0, 0.0), angle), turned((2.0, 0.0), angle))
     assert path is not None
-    assert (length(path) < 4.5) is through
+    assert (length(path) < 4.5) is (wider > 0.0)
+
+
+@pytest.mark.parametrize("shift", SHIFTS)
+@pytest.mark.parametrize("angle", ANGLES)
+def test_between_posts_that_stand_too_close_leads_no_path(angle, shift):
+    """All around the robot a post every 0.43 m, which its disc of 0.44 m does not get through."""
+    around = math.tau * np.arange(30) / 30 + angle
+    posts = 0.43 / (2 * math.sin(math.pi / 30)) * np.column_stack([np.cos(around), np.sin(around)])
+    obstacles = ObstacleMap()
+    obstacles.add(np.array([[posts[0], posts[0]]]), posts + shift, WIDE)
+    assert open_path(obstacles, shift, (6.0, 0.0)) is None
+
+
+def test_a_fast_robot_goes_round_where_a_slow_one_squeezes_through():
+    gap = 2 * WIDE + 0.02
+    obstacles = seen(((2.0, -3.0), (2.0, -gap / 2)), ((2.0, gap / 2), (2.0, 1.3)))
+    through, around = (
+        open_path(obstacles, (0.0, 0.0), (4.0, 0.0), speed) for speed in (0.6, 2.0)
+    )
+    assert length(through) < 4.3 < 5.0 < length(around) < 5.8
 
 
 def test_where_what_was_seen_encloses_the_robot_there_is_none():
