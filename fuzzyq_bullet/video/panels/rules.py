@@ -56,9 +56,7 @@ class Rules:
         base = controller_shown(trajectory.scenario.planner).base
         turn_unit = float(getattr(trajectory.scenario.planner, "turn_unit", math.radians(45.0)))
         self._rows, self._columns = len(base.row.sets), len(base.column.sets)
-        # Where the left is freer stands on the left, in whatever order a file lists its sets.
-        leftmost = sorted(range(self._columns), key=lambda i: -base.column.sets[i].center)
-        self._places = {column: place for place, column in enumerate(leftmost)}
+        self._places = {column: place for place, column in enumerate(base.column.falling)}
         self._cell = _TABLE[0] // max(self._columns, 2), _TABLE[1] // max(self._rows, 3)
         weights = rule_weights(trajectory).reshape(self._rows, self._columns, 2)
         self._arrows = [
