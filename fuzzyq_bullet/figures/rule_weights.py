@@ -63,7 +63,9 @@ def _table(axes: Axes, name: str, table: Floats, base: RuleBase) -> None:
     for (row, column), value in np.ndenumerate(mirrored):
         ink = "white" if shades[row, column] < 0.6 else INK
         axes.text(column, row, f"{value:g}", ha="center", va="center", color=ink, fontsize=13)
-    sides = [one.meaning.replace(" ", "\n", 1) for one in map(base.column.sets.__getitem__, columns)]
+    sides = [
+        one.meaning.replace(" ", "\n", 1) for one in map(base.column.sets.__getitem__, columns)
+    ]
     near = [one.meaning for one in base.row.sets]
     axes.set_xticks(range(len(sides)), sides, fontsize=9)
     axes.set_yticks(range(len(near)), near, fontsize=10)
