@@ -65,8 +65,8 @@ def lens_for(
 ) -> Lens:
     """Return the camera that shows points (m) of the arena largest, looking north if it can.
 
-    It shows the whole arena, so that no wall is cut off, if the robot crosses most of it, or if that
-    is hardly further away.
+    It shows the whole arena, so that no wall is cut off, if the robot crosses most of it, or if
+    that is hardly further away.
 
     Args:
         trajectory: The run.
