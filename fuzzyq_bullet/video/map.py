@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fuzzyq_bullet.rules_turn import has_rules
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.footprints import Floats, arrow
@@ -63,7 +64,10 @@ class Map:
             still,
             plan.field,
             aims=bool(np.isfinite(trajectory.decisions.aim).any()),
-            ways_out=bool(self._avoidance.marks),
+            begins=any(mark.begins for mark in self._avoidance.marks),
+            ends=any(not mark.begins for mark in self._avoidance.marks),
+            targets=bool(np.isfinite(trajectory.decisions.target).any()),
+            ruled=has_rules(trajectory.decisions),
             unit=unit,
         )
         plan.draw_on(still)
