@@ -37,13 +37,13 @@ PATH = {
 }
 """By mode. The thickest is the shortest: a breakout is often one decision long."""
 
-_PLAIN = "path"
+PLAIN = "path"
 """What a stretch of routine is called for a planner without rules."""
 
 LEGEND = (
     "start",
     "goal",
-    _PLAIN,
+    PLAIN,
     *(stroke.words for stroke in PATH.values()),
     TEMPORARY := "temporary goal of a breakout",
     LEAVES := "leaves the obstacle",
@@ -187,7 +187,7 @@ def _path(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
             )
         )  # fmt: skip
         plain = mode == "routine" and not has_rules(trajectory.decisions)
-        shown[_PLAIN if plain else stroke.words] = Line2D(
+        shown[PLAIN if plain else stroke.words] = Line2D(
             [], [], color=stroke.colour, lw=stroke.width
         )
 

@@ -1,4 +1,4 @@
-"""What a decision asks for, in words: a step and what of it is free, or a twist; not what is driven."""
+"""What a decision asks for, in words: a step and what is free, or a twist; not what is driven."""
 
 from __future__ import annotations
 

@@ -58,6 +58,7 @@ class Map:
         self._footprint = None if model.is_disc else np.array(model.footprint) / model.radius
         positions = trajectory.ticks.position
         self._avoidance = Avoidance(trajectory)
+        ruled, targets = has_rules(trajectory.decisions), trajectory.decisions.target
         still = paint.card(rect, unit=unit)
         note(still, plan.field, f"squares of {plan.step:g} m", unit)
         legend(
@@ -66,8 +67,8 @@ class Map:
             aims=bool(np.isfinite(trajectory.decisions.aim).any()),
             begins=any(mark.begins for mark in self._avoidance.marks),
             ends=any(not mark.begins for mark in self._avoidance.marks),
-            targets=bool(np.isfinite(trajectory.decisions.target).any()),
-            ruled=has_rules(trajectory.decisions),
+            targets=bool(self._avoidance.marks) and (ruled or bool(np.isfinite(targets).any())),
+            ruled=ruled,
             unit=unit,
         )
         plan.draw_on(still)

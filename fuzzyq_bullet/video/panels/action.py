@@ -111,7 +111,7 @@ class Action:
 def _write_asked(image: Image.Image, box: paint.Box, asked: tuple[tuple[str, str], ...]) -> None:
     for (name, value), y in zip(asked, _ASKED, strict=False):
         paint.write(image, (12 - box[0], y - box[1]), name, style.MUTED, 16)
-        room = _FACTS - 34 - style.text_width(name, 16)
+        room = _FACTS - 30 - style.text_width(name, 16)
         text, size = style.fitting(value, room, (19, 17, 15), bold=True)
         right = (_FACTS - 12 - box[0], y - box[1])
         paint.write(image, right, text, style.TEXT, size, bold=True, align="r")
