@@ -172,7 +172,10 @@ class Spectator:
         self._headings = self._headings_now()
         self._passed.append((before.x, before.y))
         self._lines = self._lines_of(before, decision)
-        self._why = decision.mode, reason(self._at_once(before, decision, now), 0)
+        ruled = bool(np.isfinite(decision.rules).any())
+        # Without rules it has no routine part: the first line says what planner it is.
+        mode = decision.mode if ruled or decision.mode != "routine" else ""
+        self._why = mode, reason(self._at_once(before, decision, now), 0)
         while True:
             if self._due:
                 if self._shown > now.time:

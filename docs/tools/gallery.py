@@ -11,24 +11,37 @@ import re
 import sys
 from pathlib import Path
 
+from matplotlib.figure import Figure
 from PIL import Image
 
-from fuzzyq_bullet import Scenario, load_scenario, run
-from fuzzyq_bullet.figures.notebook import ENDS, picture_of
+from fuzzyq_bullet import Scenario, Trajectory, load_scenario, run
+from fuzzyq_bullet.figures.notebook import ENDS
+from fuzzyq_bullet.figures.topdown import draw_run
 from fuzzyq_bullet.scenario import bundled_scenarios
+from fuzzyq_bullet.video.viewpoint import extent_of
 
 DOCS = Path(__file__).resolve().parents[1]
 PAGE = DOCS / "gallery.md"
 PICTURES = DOCS / "images" / "gallery"
-WIDEST = 420
-"""Pixels."""
+WIDEST = 480
+"""Longer side of a picture (pixels)."""
 
 HEAD = """\
 # Gallery
 
-Every bundled scenario, driven with its own settings and drawn from above. The blue line is the
-path. Red and orange are the ways out of dead ends. The command below a picture drives the scenario
-and films it. `make gallery` makes this page.
+Every bundled scenario, driven with its own settings and drawn from above. The command below a picture drives the
+scenario and films it. `make gallery` makes this page.
+
+| in a picture | what it is |
+|---|---|
+| white disc, green disc | the start, the goal |
+| black disc | the robot at the end |
+| blue line | its path |
+| red line | a breakout: the way to the goal is blocked |
+| orange line | the robot follows an obstacle |
+| purple diamond, blue square | the temporary goal of a breakout; where the robot leaves the obstacle |
+| brown | what moves, where it was at the end, and its way |
+| red cross | a collision |
 
 """
 KNOWN = re.compile(
@@ -45,6 +58,19 @@ def known() -> dict[str, tuple[str, str]]:
 def picture(name: str) -> Path:
     """Return where the picture of a scenario is."""
     return PICTURES / f"{name}.webp"
+
+
+def drawn(trajectory: Trajectory) -> Image.Image:
+    """Return a run from above without letters, which nobody could read in so small a picture."""
+    x0, y0, x1, y1 = extent_of(trajectory)
+    scale = WIDEST / 100 / max(x1 - x0, y1 - y0)
+    figure = Figure(figsize=(scale * (x1 - x0), scale * (y1 - y0)), dpi=100)
+    axes = figure.add_axes((0.01, 0.01, 0.98, 0.98))
+    draw_run(axes, trajectory)
+    axes.set(xlim=(x0, x1), ylim=(y0, y1), xticks=[], yticks=[])
+    file = io.BytesIO()
+    figure.savefig(file, format="png")
+    return Image.open(file).convert("RGB")
 
 
 def page(told: dict[str, tuple[str, str]]) -> str:
@@ -79,9 +105,7 @@ def drive(name: str, before: tuple[str, str] | None, *, anew: bool) -> tuple[str
     end = f"{ENDS[trajectory.outcome]} after {trajectory.ticks.time[-1]:.1f} s"
     told = (end, trajectory.digest())
     if anew or told != before or not picture(name).exists():
-        drawn = Image.open(io.BytesIO(picture_of(trajectory))).convert("RGB")
-        drawn.thumbnail((WIDEST, WIDEST), Image.Resampling.LANCZOS)
-        drawn.save(picture(name), quality=80, method=6)
+        drawn(trajectory).save(picture(name), quality=80, method=6)
     return told
 
 

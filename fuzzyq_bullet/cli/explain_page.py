@@ -15,7 +15,7 @@ from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.settings import RoutineSettings, WeightsSettings
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from fuzzyq_bullet.fuzzy import FuzzyController, Inference
     from fuzzyq_bullet.fuzzy.rules import Rule
@@ -81,9 +81,14 @@ def as_page(
         known: Whether the weights in force are known, and told elsewhere.
     """
     base = controller.base
-    near = _memberships(f"d = {distance:g} S_p free ahead", base.row, inference.near)
+    near = _memberships(
+        f"d = {distance:g} S_p free ahead", base.row, inference.near, range(len(base.row.sets))
+    )
     side = _memberships(
-        f"Df = {difference:g} S_p: {_roomier(difference)}", base.column, inference.side
+        f"Df = {difference:g} S_p: {_roomier(difference)}",
+        base.column,
+        inference.side,
+        base.column.falling,
     )
     inputs = Table.grid(padding=(0, 5))
     if width >= WIDE:
@@ -104,7 +109,7 @@ def as_page(
         title_line(f"Outputs ({_method_in_words(controller)})"),
         _outputs(base.outputs, inference, folded=width < WIDE),
         Text(),
-        title_line("In metres and degrees"),
+        title_line("What the robot is asked for, in metres and degrees"),
         _in_units(inference, known=known),
     )
 
@@ -122,11 +127,12 @@ def title_line(words: str) -> Text:
 
 def columns_in_words(variable: Variable) -> str:
     """Say on which side there is more room in the columns of a table."""
-    right = [one.label for one in variable.sets if one.center < 0.0]
-    left = [one.label for one in variable.sets if one.center > 0.0]
+    sets = [variable.sets[i] for i in variable.falling]
+    left = [one.label for one in sets if one.center > 0.0]
+    right = [one.label for one in sets if one.center < 0.0]
     told = [
         f"{' and '.join(labels)}: the {side} is freer"
-        for labels, side in ((right, "right"), (left, "left"))
+        for labels, side in ((left, "left"), (right, "right"))
         if labels
     ]
     return f"Columns {'; '.join(told)}."
@@ -145,9 +151,12 @@ def _roomier(difference: float) -> str:
     return "more room on the " + ("left" if difference > 0 else "right")
 
 
-def _memberships(title: str, variable: Variable, degrees: Sequence[float]) -> Table:
+def _memberships(
+    title: str, variable: Variable, degrees: Sequence[float], order: Iterable[int]
+) -> Table:
     grid = Table.grid(padding=(0, 1))
-    for one, degree in zip(variable.sets, degrees, strict=True):
+    for index in order:
+        one, degree = variable.sets[index], degrees[index]
         style = "cyan" if degree >= FIRES else "dim"
         grid.add_row(
             Text(one.label, style="bold" if degree >= FIRES else "dim"),
@@ -175,14 +184,14 @@ def _rule_table(controller: FuzzyController, inference: Inference, *, folded: bo
     widest = max(len(" ".join(cell)) for row in base.cells for cell in row)
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1))
     table.add_column("d \\ Df", style="bold", overflow="fold")
-    for label in base.column.labels:
-        table.add_column(label, overflow="fold")
+    for column in base.column.falling:
+        table.add_column(base.column.labels[column], overflow="fold")
     for label, cells, strengths in zip(base.row.labels, base.cells, inference.rules, strict=True):
         table.add_row(
             label,
             *(
-                _cell(" ".join(cell).ljust(widest), strength, strongest, folded=folded)
-                for cell, strength in zip(cells, strengths, strict=True)
+                _cell(" ".join(cells[i]).ljust(widest), strengths[i], strongest, folded=folded)
+                for i in base.column.falling
             ),
         )
     return table
@@ -269,14 +278,15 @@ def _in_units(inference: Inference, *, known: bool) -> Group:
             f"ω1, ω2 = {w1:g}, {w2:g}: {turn_and_step(inference, w1, w2)} "
             "(default of improved-fuzzy)"
         )
+    lines.append("With the safety filter it drives no farther than is known free.")
     return Group(*lines)
 
 
 def turn_and_step(inference: Inference, w1: float, w2: float) -> str:
-    """Say what an inference comes to with weights ω1 and ω2."""
+    """Say what an inference asks for with weights ω1 and ω2, in the film's words."""
     degrees = round(math.degrees(w2 * inference.turn * TURN_UNIT), 1)
     way = f"{abs(degrees):.1f}° to the {'left' if degrees > 0 else 'right'}" if degrees else "0°"
-    return f"turn {way}, step {w1 * inference.stride * STEP_UNIT:.3f} m"
+    return f"turn asked {way}, step asked {w1 * inference.stride * STEP_UNIT:.3f} m"
 
 
 def _gauge(value: float, domain: tuple[float, float], ends: tuple[str, str]) -> Text:

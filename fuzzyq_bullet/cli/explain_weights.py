@@ -54,11 +54,11 @@ def _table(policy: Policy, base: RuleBase, inference: Inference | None) -> Table
     weights = weights_of(policy).reshape(len(base.row.sets), len(base.column.sets), 2)
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1))
     table.add_column("d \\ Df", style="bold")
-    for label in base.column.labels:
-        table.add_column(label)
+    for column in base.column.falling:
+        table.add_column(base.column.labels[column])
     for row, label in enumerate(base.row.labels):
         cells = []
-        for column in range(len(base.column.sets)):
+        for column in base.column.falling:
             step, turn = weights[row, column]
             strength = 1.0 if inference is None else inference.rules[row][column]
             words = f"{step:g} {turn:g}"

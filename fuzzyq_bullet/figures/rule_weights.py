@@ -55,14 +55,17 @@ def picture(weights: Floats, title: str, base: RuleBase | None = None) -> Figure
 
 def _table(axes: Axes, name: str, table: Floats, base: RuleBase) -> None:
     """Draw a table; columns from "left much freer" to "right much freer", as in the film."""
-    mirrored = table[:, ::-1]
+    columns = list(base.column.falling)
+    mirrored = table[:, columns]
     low, high = float(table.min()), float(table.max())
     shades = (mirrored - low) / (high - low) if high > low else np.full(mirrored.shape, 0.5)
     axes.imshow(shades, cmap="cividis", vmin=0.0, vmax=1.0, aspect="auto")
     for (row, column), value in np.ndenumerate(mirrored):
         ink = "white" if shades[row, column] < 0.6 else INK
         axes.text(column, row, f"{value:g}", ha="center", va="center", color=ink, fontsize=13)
-    sides = [one.meaning.replace(" ", "\n", 1) for one in reversed(base.column.sets)]
+    sides = [
+        one.meaning.replace(" ", "\n", 1) for one in map(base.column.sets.__getitem__, columns)
+    ]
     near = [one.meaning for one in base.row.sets]
     axes.set_xticks(range(len(sides)), sides, fontsize=9)
     axes.set_yticks(range(len(near)), near, fontsize=10)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED
 from fuzzyq_bullet.planning.decision import MODES
+from fuzzyq_bullet.rules_turn import has_rules
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.trajectory import Trajectory
@@ -36,9 +37,13 @@ PATH = {
 }
 """By mode. The thickest is the shortest: a breakout is often one decision long."""
 
+PLAIN = "path"
+"""What a stretch of routine is called for a planner without rules."""
+
 LEGEND = (
     "start",
     "goal",
+    PLAIN,
     *(stroke.words for stroke in PATH.values()),
     TEMPORARY := "temporary goal of a breakout",
     LEAVES := "leaves the obstacle",
@@ -181,7 +186,10 @@ def _path(axes: Axes, trajectory: Trajectory, shown: _Shown) -> None:
                 capstyle="round", zorder=4.0 + index % 2,
             )
         )  # fmt: skip
-        shown[stroke.words] = Line2D([], [], color=stroke.colour, lw=stroke.width)
+        plain = mode == "routine" and not has_rules(trajectory.decisions)
+        shown[PLAIN if plain else stroke.words] = Line2D(
+            [], [], color=stroke.colour, lw=stroke.width
+        )
 
 
 def _escapes(axes: Axes, trajectory: Trajectory, shown: _Shown, targets: bool) -> None:

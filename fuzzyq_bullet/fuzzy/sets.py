@@ -67,6 +67,15 @@ class Variable:
         """The labels of the sets, in order."""
         return tuple(fuzzy_set.label for fuzzy_set in self.sets)
 
+    @property
+    def falling(self) -> tuple[int, ...]:
+        """Where in ``sets`` each is, from the greatest center to the least.
+
+        In this order the sets of Df stand wherever they are shown side by side: what means that the
+        left is freer stands on the left, in whatever order a file lists its sets.
+        """
+        return tuple(sorted(range(len(self.sets)), key=lambda i: -self.sets[i].center))
+
     def set_of(self, label: str) -> FuzzySet:
         """Return the set that ``label`` stands for.
 

@@ -30,8 +30,8 @@ MARK = "fuzzyq page"
 
 MODULES = (
     "sets", "inference", "dom", "colours", "timeline", "arrows", "movers", "field", "plot",
-    "rule_table", "surface", "senses", "judges", "rules", "acts", "run_view", "legend", "player",
-    "what_if", "keys", "main",
+    "rule_table", "surface", "senses", "around", "judges", "rules", "acts", "run_view", "legend",
+    "player", "what_if", "keys", "main",
 )  # fmt: skip
 """The modules of the page in an order in which each stands behind those that it imports."""
 

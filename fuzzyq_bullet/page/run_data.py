@@ -9,10 +9,11 @@ import numpy as np
 
 from fuzzyq_bullet.fuzzy import definition_of
 from fuzzyq_bullet.moving import headings_of
+from fuzzyq_bullet.planning.commands import COMMAND_FIELDS
 from fuzzyq_bullet.planning.controllers import controller_of
 from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.rules_turn import asked, has_rules
-from fuzzyq_bullet.video.captions import outcome_lines, planner_name
+from fuzzyq_bullet.video.captions import outcome_lines, planner_name, routine_name
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.explanation import aim_name, off_aim, reason
 from fuzzyq_bullet.video.panels.rules import rule_weights
@@ -49,7 +50,7 @@ def run_data(trajectory: Trajectory) -> dict[str, Any]:
         "planner": planner_name(trajectory),
         "drive": scenario.drive,
         "seed": scenario.seed,
-        "has_modes": bool(trajectory.decisions.mode.any() or has_rules(trajectory.decisions)),
+        "routine": routine_name(trajectory),
         "outcome": trajectory.outcome,
         "end": {"title": title, "figures": figures},
         "field": _field(trajectory),
@@ -153,6 +154,9 @@ def _decisions(trajectory: Trajectory) -> dict[str, Any]:
         array = getattr(decisions, name)[kept]
         flat = array if array.ndim == 1 else array.reshape(len(kept), -1)
         table[name] = _numbers(flat, _DIGITS.get(name, 3))
+    for name in COMMAND_FIELDS:
+        if (asked_for := getattr(decisions, name)) is not None:
+            table[name] = _numbers(asked_for[kept], 3)
     table["asked"] = [int(one) for one in asked(decisions)[kept]]
     table["off_aim"] = [_number(off_aim(trajectory, k), 4) for k in kept]
     table["aims_at"] = [aim_name(trajectory, k) for k in kept]
@@ -195,11 +199,11 @@ def _events(trajectory: Trajectory, times: NDArray[np.float64]) -> list[dict[str
     names = [MODES[number] for number in trajectory.decisions.mode.tolist()]
     before = "routine"
     for k, (time, mode) in enumerate(zip(times.tolist(), names, strict=True)):
-        if before != "breakout" and mode == "breakout":
+        if before != "breakout" == mode or (before == "routine" and mode == "following"):
             words = reason(trajectory, k)
             found.append({"time": _number(time), "kind": "breakout", "words": words})
         elif before != "routine" and mode == "routine":
-            words = "Out of the trap: the routine goes on"
+            words = "Out of the trap: goes on"
             found.append({"time": _number(time), "kind": "routine", "words": words})
         before = mode
     kind = "contact" if trajectory.collision is not None else trajectory.outcome

@@ -64,9 +64,10 @@ class Avoidance:
         for k, (tick, number) in enumerate(zip(decisions.tick, decisions.mode, strict=True)):
             mode = MODES[int(number)]
             x, y = trajectory.ticks.position[int(tick)].tolist()
-            if mode == "breakout" != before:
+            # A planner of another paper may follow a boundary without having broken out.
+            if mode == "breakout" != before or (mode == "following" and before == "routine"):
                 self._mark(Mark(k, (x, y), begins=True))
-            if before == "following" and mode == "routine":
+            if before != "routine" and mode == "routine":
                 self._mark(Mark(k, (x, y), begins=False))
             held = None if mode == "routine" else self._nearest((x, y), held)
             if held is not None:

@@ -11,7 +11,7 @@ from fuzzyq_bullet.physics.camera import Lens
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
 from fuzzyq_bullet.video import paint
 from fuzzyq_bullet.video.shots import Shots
-from fuzzyq_bullet.video.viewpoint import lens_for
+from fuzzyq_bullet.video.viewpoint import CROSSED, lens_for
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,13 +61,16 @@ class FixedCamera:
         self._trajectory, self._size = trajectory, size
         self.shots = Shots(trajectory)
         shots = [Shots(run)[0] for run in together]
+        self._small = len(shots) > 1
         alike = all(shot.whole for shot in shots)
         self._points = np.concatenate([shot.points for shot in shots]) if shots and alike else None
 
     def lens(self, number: int) -> Lens:
         """Return the lens that shows all of a shot."""
         points = self.shots[number].points if self._points is None else self._points
-        return lens_for(self._trajectory, points, self._size)
+        # Several runs share a frame: their scenes are small, and the map beside them shows all.
+        crossed = 0.0 if self._small else CROSSED
+        return lens_for(self._trajectory, points, self._size, crossed=crossed)
 
     def window(self, lens: Lens, moment: Moment) -> paint.Box:
         """Return all of the picture."""

@@ -54,6 +54,14 @@ def planner_name(trajectory: Trajectory) -> str:
     return str(getattr(trajectory.scenario.planner, "name", None) or "unknown planner")
 
 
+def routine_name(trajectory: Trajectory) -> str:
+    """Return what the mode of a planner is called while it goes its usual way.
+
+    The routine part is the paper's. A planner without fuzzy rules is called by its name.
+    """
+    return "routine" if has_rules(trajectory.decisions) else planner_name(trajectory)
+
+
 def caption(trajectory: Trajectory, rect: Rect = HEADER, unit: float = 1.0) -> DirtyRegion:
     """Return the line that says which scenario, planner and seed this is.
 
@@ -115,9 +123,7 @@ class Story:
     def __init__(self, trajectory: Trajectory, rect: Rect = STORY, unit: float = 1.0) -> None:
         self._trajectory, self._rect, self._unit = trajectory, rect, unit
         self._mode = trajectory.decisions.mode
-        # The modes are the paper's. A planner without them is called by its name.
-        plain = not (self._mode.any() or has_rules(trajectory.decisions))
-        self._badge = planner_name(trajectory).upper() if plain else ""
+        self._routine = routine_name(trajectory)
         self._card = paint.card(rect, unit=unit)
         self._decision: tuple[int, bool] | None = None
         self._shown: tuple[str, str] | None = None
@@ -142,7 +148,7 @@ class Story:
             image.paste(colour, (round(12 * unit), round(10 * unit)), pill)
             middle = ((12 + _BADGE) / 2 * unit, rect.height / 2 + 7 * unit)
             sizes = style.scaled(_BADGES, unit)
-            text, size = style.fitting(self._badge or mode.upper(), wide - 20 * unit, sizes, True)
+            text, size = style.fitting(self._named(mode).upper(), wide - 20 * unit, sizes, True)
             pen.text(middle, text, ink, style.font(size, True), anchor="ms")
         room = rect.width - (_BADGE + 34) * unit
         sizes = style.scaled((30, 27, 24, 21, 19), unit)
@@ -150,6 +156,9 @@ class Story:
         y = rect.height // 2 + round(size * 0.36)
         paint.write(image, ((_BADGE + 18) * unit, y), text, style.TEXT, size, bold=True)
         return DirtyRegion(rect.x, rect.y, image)
+
+    def _named(self, mode: str) -> str:
+        return self._routine if mode == "routine" else mode
 
     def sentence(self, decision: int, *, over: bool = False) -> str:
         """Return what is said of a decision; at the end, how the run ended."""

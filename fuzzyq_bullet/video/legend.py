@@ -16,6 +16,9 @@ _LINE = 18
 _EDGE = 12
 _COLUMN = 92
 """Room that the words take beside the field (points)."""
+_RULED = {"aim": "aim", "target": "frontier", "begins": "breakout", "ends": "routine"}
+_OTHERS = {"aim": "aim", "target": "target", "begins": "blocked", "ends": "free again"}
+"""What each mark is called, for planners with fuzzy rules and for others."""
 
 
 def note(image: Image.Image, field: paint.Box, text: str, unit: float = 1.0) -> None:
@@ -34,7 +37,15 @@ def note(image: Image.Image, field: paint.Box, text: str, unit: float = 1.0) -> 
 
 
 def legend(
-    image: Image.Image, field: paint.Box, *, aims: bool, ways_out: bool, unit: float = 1.0
+    image: Image.Image,
+    field: paint.Box,
+    *,
+    aims: bool,
+    targets: bool,
+    begins: bool,
+    ends: bool,
+    ruled: bool,
+    unit: float = 1.0,
 ) -> None:
     """Say what the marks are, in a line below the field, or in a column beside it.
 
@@ -42,34 +53,37 @@ def legend(
         image: The map.
         field: The part of it in which the arena is drawn.
         aims: Whether there are aims.
-        ways_out: Whether there are ways out.
+        targets: Whether there are temporary goals.
+        begins: Whether ways out begin.
+        ends: Whether ways out end.
+        ruled: Whether the planner has fuzzy rules: the names of its modes are the paper's.
         unit: Pixels a point.
     """
-    words = ["aim"] if aims else []
-    if ways_out:
-        words += ["frontier", "breakout", "routine"]
+    names = _RULED if ruled else _OTHERS
+    there = (aims, targets, begins, ends)
+    entries = [(mark, names[mark]) for mark, shown in zip(names, there, strict=True) if shown]
     (size,) = style.scaled((_SIZE,), unit)
     if field[3] <= image.height - _LINE * unit:
         x = _EDGE * unit
-        for word in words:
-            _entry(image, x, image.height - 6 * unit, word, unit)
+        for mark, word in entries:
+            _entry(image, x, image.height - 6 * unit, mark, word, unit)
             x += 36 * unit + style.text_width(word, size)
     elif field[0] >= _COLUMN * unit:
-        for row, word in enumerate(reversed(words)):
-            _entry(image, 8 * unit, image.height - (10 + 22 * row) * unit, word, unit)
+        for row, (mark, word) in enumerate(reversed(entries)):
+            _entry(image, 8 * unit, image.height - (10 + 22 * row) * unit, mark, word, unit)
 
 
-def _entry(image: Image.Image, x: float, y: float, word: str, unit: float) -> None:
+def _entry(image: Image.Image, x: float, y: float, mark: str, word: str, unit: float) -> None:
     """Draw a mark with its word; ``x`` is its left edge and ``y`` the word's baseline."""
     at, everywhere = (x + 8 * unit, y - 5 * unit), (0, 0, *image.size)
     (size,) = style.scaled((_SIZE,), unit)
-    if word == "frontier":
+    if mark == "target":
         diamond(image, everywhere, at, 6.0, unit)
     else:
-        if word == "aim":
+        if mark == "aim":
             layers = reticle(at, image.size, 7.0, unit)
         else:
-            layers = (began if word == "breakout" else left_off)(at, image.size, unit)
+            layers = (began if mark == "begins" else left_off)(at, image.size, unit)
         for colour, drawn in layers:
             drawn.lay(image, everywhere, colour)
     paint.write(image, (x + 22 * unit, y), word, style.MUTED, size)

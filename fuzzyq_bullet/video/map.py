@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fuzzyq_bullet.rules_turn import has_rules
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.footprints import Floats, arrow
@@ -57,13 +58,17 @@ class Map:
         self._footprint = None if model.is_disc else np.array(model.footprint) / model.radius
         positions = trajectory.ticks.position
         self._avoidance = Avoidance(trajectory)
+        ruled, targets = has_rules(trajectory.decisions), trajectory.decisions.target
         still = paint.card(rect, unit=unit)
         note(still, plan.field, f"squares of {plan.step:g} m", unit)
         legend(
             still,
             plan.field,
             aims=bool(np.isfinite(trajectory.decisions.aim).any()),
-            ways_out=bool(self._avoidance.marks),
+            begins=any(mark.begins for mark in self._avoidance.marks),
+            ends=any(not mark.begins for mark in self._avoidance.marks),
+            targets=bool(self._avoidance.marks) and (ruled or bool(np.isfinite(targets).any())),
+            ruled=ruled,
             unit=unit,
         )
         plan.draw_on(still)

@@ -286,7 +286,9 @@ def _decorated(
         return seen(circle(centre, radius))
 
     area = meshes.ground_seen(lens)
-    low, high = area.min(axis=0), area.max(axis=0)
+    floor = meshes.ground_of(scenario, area)
+    floor = floor if len(floor) else area
+    low, high = floor.min(axis=0), floor.max(axis=0)
     step = grid_step(float((high - low).max()))
 
     def grid(pen: ImageDraw.ImageDraw, scaled: paint.Scaled) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.physics.camera import Lens
-from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
+from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_THICKNESS
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
@@ -22,8 +22,12 @@ YAWS = tuple(math.radians(angle) for angle in (0, -20, 20, -40, 40, -65, 65, 90)
 """How far it may look past north (rad), to the left positive."""
 MARGIN = 1.3
 """Least distance (m) from the robot's way to the edge of the picture: a detection line's length."""
+CROSSED = 1.6
+"""The whole arena is shown if its longer side is at most so many times as long as the way spans."""
 HARDLY_FURTHER = 1.25
-"""The whole arena is shown if the camera is at most so many times as far away then."""
+"""It is shown too if the camera is at most so many times as far away then."""
+_AROUND = 0.02
+"""What is left free around a whole arena, as a part of its sides."""
 _EDGE = 10
 """Pixels left free along the edges of the picture."""
 _MOST_POINTS = 4000
@@ -56,10 +60,19 @@ def extent_of(trajectory: Trajectory, margin: float = MARGIN) -> tuple[float, fl
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
-def lens_for(trajectory: Trajectory, points: Floats, size: tuple[int, int]) -> Lens:
+def lens_for(
+    trajectory: Trajectory, points: Floats, size: tuple[int, int], *, crossed: float = CROSSED
+) -> Lens:
     """Return the camera that shows points (m) of the arena largest, looking north if it can.
 
-    It shows the whole arena, so that no wall is cut off, if that is hardly further away.
+    It shows the whole arena, so that no wall is cut off, if the robot crosses most of it, or if
+    that is hardly further away.
+
+    Args:
+        trajectory: The run.
+        points: What has to be in the picture (m), shape (N, 2).
+        size: Width and height of the picture (pixels).
+        crossed: How many times as long as the points span the arena's longer side may be.
     """
     span = float((points.max(axis=0) - points.min(axis=0)).max())
     margin = max(MARGIN, 0.06 * span)
@@ -69,9 +82,13 @@ def lens_for(trajectory: Trajectory, points: Floats, size: tuple[int, int]) -> L
     if not trajectory.scenario.arena.walls:
         return _best(flat, size)
     low, high = np.array(trajectory.scenario.arena.bounds).reshape(2, 2)
-    low, high = low - 0.1, high + 0.1
-    near = _best(np.clip(flat, low, high), size)  # nothing happens behind a wall
+    free = WALL_THICKNESS + _AROUND * (high - low)
+    # Nothing happens behind a wall.
+    near = _best(np.clip(flat, low - WALL_THICKNESS, high + WALL_THICKNESS), size)
+    low, high = low - free, high + free
     whole = _best(np.array([low, (high[0], low[1]), high, (low[0], high[1])]), size)
+    if max(trajectory.scenario.arena.size) <= crossed * span:
+        return whole
     return whole if _distance(whole) <= HARDLY_FURTHER * _distance(near) else near
 
 

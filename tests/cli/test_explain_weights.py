@@ -35,7 +35,7 @@ def test_the_weights_of_every_rule_are_told_alone_or_with_what_is_sensed(inside:
     expected = weighed(firing(paper_controller().infer(2.0, -1.0)), weights)
     assert sensed["weights_in_force"] == list(expected)
     page = inside("explain", 2, -1, "--policy", "shipped").stdout
-    assert f"ω1, ω2 = {expected[0]:.3g}, {expected[1]:.3g}: turn" in page
+    assert f"ω1, ω2 = {expected[0]:.3g}, {expected[1]:.3g}: turn asked" in page
     assert page.count("◀") > 2  # the strongest rule, and the weights of those that fire
 
 

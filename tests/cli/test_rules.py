@@ -280,7 +280,7 @@ def test_explain_shows_a_table_of_any_size(field: Callable[..., Path], inside: C
     path = field().with_name("three.yaml")
     page = inside("explain", 1.2, -0.8, "--rules", path).stdout
     assert "Rules (three by three): [turn step]" in page
-    assert "Columns right: the right is freer; left: the left is freer." in page
+    assert "Columns left: the left is freer; right: the right is freer." in page
     assert "if d is near (0.87)" in page
     with pytest.raises(UserError, match=r"--rules: nowhere\.yaml: cannot be read"):
         inside("explain", 1, 1, "--rules", "nowhere.yaml")

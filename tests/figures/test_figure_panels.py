@@ -16,7 +16,16 @@ from fuzzyq_bullet.cli.report import figure
 from fuzzyq_bullet.figures import FIGURES, MARK
 from fuzzyq_bullet.figures.runs import FIGURES as RUNS
 from fuzzyq_bullet.figures.runs import Grid, Panel, picture, scenario_of
-from fuzzyq_bullet.figures.topdown import HIT, LEAVES, LEGEND, MOVES, PATH, TEMPORARY, draw_run
+from fuzzyq_bullet.figures.topdown import (
+    HIT,
+    LEAVES,
+    LEGEND,
+    MOVES,
+    PATH,
+    PLAIN,
+    TEMPORARY,
+    draw_run,
+)
 from fuzzyq_bullet.planning import MODES
 from fuzzyq_bullet.scenario import bundled_scenarios, realise
 from tests.test_unchanged import SAME_SINES, known, told
@@ -202,8 +211,8 @@ def test_titles_say_how_each_run_ended_and_one_legend_explains_all(
     assert len(drawn.axes) == 4  # each panel and its close-up
     (legend,) = drawn.legends
     words = [text.get_text() for text in legend.get_texts()]
-    # Between them the two show all there is, but for what moves.
-    assert words == [entry for entry in LEGEND if entry != MOVES]
+    # Between them the two show all there is, but for what moves and planners without rules.
+    assert words == [entry for entry in LEGEND if entry not in (MOVES, PLAIN)]
     assert "10 × 10 m" in legend.get_title().get_text()
 
 

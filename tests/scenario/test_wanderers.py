@@ -67,12 +67,24 @@ def test_a_file_may_ask_for_them_and_another_does_not_tell_of_them():
     assert "movers" not in dump_scenario(random_task(1))
 
 
+SPEEDS = "movers.speed: must be the least and the greatest speed (m/s), such as "
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ("{count: 2, speed: [0.5, 0.1]}", "movers.speed: must be the least and the greatest speed"),
+        ("{count: 2, speed: [0.5, 0.1]}", SPEEDS + "[0.1, 0.5]; got [0.5, 0.1]"),
+        ("{count: 2, speed: 0.3}", SPEEDS + "[0.3, 0.3]; got 0.3"),
+        ("{count: 2, speed: fast}", SPEEDS + "[0.1, 0.5]; got 'fast'"),
+        ("{count: 2, speed: [0.2, x]}", SPEEDS + "[0.2, 0.2]; got [0.2, 'x']"),
+        ("{count: 2, speed: [true, 1]}", SPEEDS + "[1, 1]; got [true, 1]"),
+        ("{count: 2, speed: []}", SPEEDS + "[0.1, 0.5]; got []"),
+        ("{count: 2, speed: -1}", SPEEDS + "[0.1, 0.5]; got -1"),
+        ("{count: 2, speed: [0.4, 0.2, 0.3]}", SPEEDS + "[0.2, 0.4]; got [0.4, 0.2, 0.3]"),
+        ("{count: 2, speed: [0.1, 20]}", "movers.speed[1]: must be at most 3, got 20"),
+        ("{count: 2, speed: [.nan, 0.2]}", "movers.speed[0]: must be finite, got nan"),
         ("{radius: 0.2}", "movers.count: is required"),
-        ("{count: 2, radius: 0}", "movers.radius: must be at least 0.02"),
+        ("{count: 2, radius: 0}", "movers.radius: must be at least 0.02, got 0"),
     ],
 )
 def test_mistakes_are_named(given, message):
@@ -82,8 +94,10 @@ start: {{position: [1, 1]}}
 goal: {{position: [9, 9]}}
 random: {{count: 5, movers: {given}}}
 """
-    with pytest.raises(UserError, match=message.replace("[", r"\[")):
+    with pytest.raises(UserError) as caught:
         parse_scenario(text)
+    (line,) = str(caught.value).splitlines()
+    assert line.endswith(f":5: random.{message}")
 
 
 def test_too_many_are_refused():

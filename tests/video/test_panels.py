@@ -15,6 +15,7 @@ from fuzzyq_bullet.planning.fuzzy_q_lambda import weights_of
 from fuzzyq_bullet.planning.policies import shipped
 from fuzzyq_bullet.scenario import random_task, realise
 from fuzzyq_bullet.video import paint
+from fuzzyq_bullet.video.captions import routine_name
 from fuzzyq_bullet.video.compositor import Compositor, closing
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.panels.rules import rule_weights
@@ -81,16 +82,56 @@ def test_every_panel_names_the_same_aim(
     assert not any("ahead" in text for text in shown)
 
 
+def test_a_step_is_called_asked_and_what_is_free_stands_beside_it(
+    run: Trajectory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = texts(facts(run, step=6.96, reach=0.42), monkeypatch)
+    assert shown >= {"step asked", "6.96 m", "known free", "0.42 m"}
+    assert "step" not in shown
+    assert texts(facts(run, step=12.34, reach=np.inf), monkeypatch) >= {"12.3 m", "not checked"}
+
+
+@pytest.mark.parametrize(("rate", "words"), [(0.5, "29°/s left"), (-0.5, "29°/s right")])
+def test_a_twist_is_shown_in_place_of_a_step(
+    run: Trajectory, rate: float, words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = texts(facts(run, twist_speed=-0.25, twist_turn_rate=rate), monkeypatch)
+    assert shown >= {"speed asked", "−0.25 m/s", "turn asked", words}
+    assert not shown & {"step asked", "known free"}
+
+
+def test_sides_that_are_not_asked_for_say_what_they_count_as(
+    run: Trajectory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clear = {"lengths": (0.4, 1.0, 0.9), "distance": 5.0, "difference": 0.0, "mode": 0}
+    shown = texts(facts(run, **clear), monkeypatch)
+    assert shown >= {"way is clear", "−0.50 m", "taken as 0", "taken as alike"}
+
+
 def test_a_planner_without_rules_has_panels_that_tell_of_what_it_does(
     run: Trajectory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     blank = drive(scenario(4, 0), seconds=1.0, outcome="timeout", explained=False)
     shown = texts(blank, monkeypatch)
     assert not shown & RULED
-    assert shown >= {"2  HEADS FOR", "3  KEEPS CLEAR", "known free", "not checked", "casts no"}
+    assert shown >= {"2  HEADS FOR", "3  KEEPS CLEAR", "casts no", "turning"}
+    assert shown >= {"arrow: heading", "sees up to", "1.00 m"}
     decision = DecisionHold(blank).at(Timeline(blank).at(0.5))
     near = float(blank.ticks.clearance[blank.decisions.tick[decision]])
     assert f"nearest thing {near:.2f} m" in shown
+
+
+@pytest.mark.parametrize("explained", [True, False])
+def test_the_paper_s_words_for_modes_are_of_planners_with_rules_alone(
+    explained: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = drive(scenario(4, 0), seconds=1.0, outcome="timeout", explained=explained)
+    half = np.arange(len(run.decisions.tick)) > len(run.decisions.tick) // 2
+    followed = replace(run, decisions=replace(run.decisions, mode=np.where(half, 2, 0)))
+    assert routine_name(followed) == ("routine" if explained else "improved-fuzzy")
+    shown = texts(followed, monkeypatch)
+    ruled, others = {"frontier", "breakout"}, {"blocked"}
+    assert shown & (ruled | others) == (ruled if explained else others)
 
 
 def test_in_the_last_frame_the_robot_is_in_the_goal_and_heads_nowhere(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from fuzzyq_bullet.physics.obstacle_urdf import WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import frame, style
 from fuzzyq_bullet.video.compositor import Compositor
 from fuzzyq_bullet.video.scene import Scene
@@ -36,16 +37,19 @@ def test_a_way_in_a_small_arena_is_one_shot() -> None:
     assert len(Shots(drive(seconds=2.0))) == 1
 
 
-@pytest.mark.parametrize("size", [(720, 720), (1280, 720)])
+@pytest.mark.parametrize("size", [(720, 720), (1280, 720), SCENE.size])
+@pytest.mark.parametrize("goal", [(9.0, 9.0), (9.0, 1.0), (1.0, 9.0)])
 def test_no_wall_is_cut_off_unless_the_arena_is_much_larger_than_the_way(
-    size: tuple[int, int],
+    size: tuple[int, int], goal: tuple[float, float]
 ) -> None:
-    run = drive(scenario(4, 0, start=(1.0, 1.0), goal=(9.0, 9.0)), seconds=2.0)
-    corners = [(x, y, 0.0) for x in (0.0, 10.0) for y in (0.0, 10.0)]
-    lens = lens_for(run, np.array([(1.0, 1.0), (9.0, 9.0)]), size)
+    run = drive(scenario(4, 0, start=(1.0, 1.0), goal=goal), seconds=2.0)
+    ends = (-WALL_THICKNESS, 10.0 + WALL_THICKNESS)
+    corners = [(x, y, z) for x in ends for y in ends for z in (0.0, WALL_HEIGHT)]
+    lens = lens_for(run, np.array([(1.0, 1.0), goal]), size)
     seen = lens.project(corners)
-    assert (seen > 0).all()
-    assert (seen < size).all()
+    margin = 0.01 * min(size)
+    assert (seen > margin).all()
+    assert (seen < np.array(size) - margin).all()
     near = lens_for(run, np.array([(1.0, 1.0), (3.0, 3.0)]), size)
     assert not ((near.project(corners) > 0) & (near.project(corners) < size)).all()
 

@@ -57,7 +57,8 @@ def decoded(path: Path) -> np.ndarray[Any, np.dtype[np.uint8]]:
 
 @pytest.fixture(scope="module")
 def short() -> Trajectory:
-    return drive(seconds=1.5, outcome="timeout")
+    # A part of a large arena: ground fills the scene, and no flat colour most of the frame.
+    return drive(scenario(size=(20.0, 20.0)), seconds=1.5, outcome="timeout")
 
 
 @pytest.fixture(scope="module")

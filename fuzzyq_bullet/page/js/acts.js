@@ -1,14 +1,22 @@
-/** Card 4: what the robot does: the turn off its aim, the step, and the weights in force. */
+/** The last card: what the robot is asked for, what it does, and the weights in force. */
 import { arcPath, arrowPath } from "./arrows.js";
 import { fixed, html, say, set, svg, turning, weight } from "./dom.js";
 
 const CENTRE = [90, 84];
 const RADIUS = 66;
 const MEANINGS = {
+  step: "what the planner asks for; the robot brakes for what is not known to be free",
+  reach: "how far the way is known to be free",
   w1: "weight in force of the step",
   w2: "weight in force of the turn",
   c_f: "with less than this free towards the goal, the robot breaks out",
 };
+
+/** Return a turn rate (rad/s, left is positive) in words. */
+function turnRate(rate) {
+  const degrees = Math.round((Math.abs(rate) * 180) / Math.PI);
+  return degrees < 1 ? "straight on" : `${degrees}°/s ${rate > 0 ? "left" : "right"}`;
+}
 
 /** A dial: up is the aim, the needle where the robot heads. */
 export class Dial {
@@ -38,7 +46,7 @@ export class Dial {
 }
 
 export class Acts {
-  constructor(run) {
+  constructor(run, number) {
     this.run = run;
     this.longest = Math.max(...run.decisions.step.filter(Number.isFinite), 1e-6);
     this.dial = new Dial();
@@ -55,12 +63,15 @@ export class Acts {
     this.element = html(
       "section",
       { class: "card acts" },
-      html("h3", {}, "4 · Acts"),
+      html("h3", {}, `${number} · Acts`),
       html("div", { class: "needle-box" }, this.dial.element, html("p", {}, this.turn, this.aim)),
       html(
         "dl",
         {},
-        fact("step", "step"),
+        fact("step", "step asked", !run.twists),
+        fact("reach", "known free", !run.twists),
+        fact("fast", "speed asked", run.twists),
+        fact("rate", "turn asked", run.twists),
         fact("speed", "speed"),
         fact("clearance", "nearest"),
         fact("w1", "ω1 · step", weighted),
@@ -78,7 +89,12 @@ export class Acts {
     this.dial.show(decision.off_aim, decision.step / this.longest);
     say(this.turn, turning(decision.off_aim));
     say(this.aim, ` ${Math.abs(decision.off_aim) < 0.0087 ? "to" : "of"} ${decision.aims_at}`);
-    say(this.facts.step, `${fixed(decision.step)} m`);
+    const { step, reach, fast, rate } = this.facts;
+    const there = (number, words) => (number === null ? "–" : words(number));
+    if (step) say(step, `${fixed(decision.step)} m`);
+    if (reach) say(reach, decision.reach === null ? "not checked" : `${fixed(decision.reach)} m`);
+    if (fast) say(fast, there(decision.twist_speed, (speed) => `${fixed(speed)} m/s`));
+    if (rate) say(rate, there(decision.twist_turn_rate, turnRate));
     const { w1, w2, c_f: limit } = this.facts;
     if (w1) say(w1, weight(decision.weights[0]));
     if (w2) say(w2, weight(decision.weights[1]));

@@ -249,6 +249,8 @@ export class Field {
         pen.stroke();
         pen.restore();
       });
+    } else if (this.follows) {
+      this.drawDisc(pen, origin, radius + this.run.data.robot.range * this.scale); // what it sees
     }
     const reach = Math.max(radius * 2.6, 26 * this.marks);
     const tip = [

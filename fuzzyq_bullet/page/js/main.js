@@ -32,7 +32,7 @@ function start() {
       whatIf?.take(views.filter(({ run }) => pupils.includes(run)).map(({ decision }) => decision));
     });
     const side = html("div", { class: "runs" }, ...views.map(({ element }) => element));
-    main.append(side, legend());
+    main.append(side, legend(runs));
     document.body.append(html("footer", {}, player.element));
   }
   if (whatIf) main.append(whatIf.element);

@@ -15,7 +15,8 @@ export class Rules {
 
   show(decision) {
     const asked = !decision || Boolean(decision.asked);
-    say(this.title, asked ? "3 · Rules that fire" : "3 · Aims at a gap: rules not asked");
+    const unasked = decision?.mode === "routine" ? "3 · Rules not asked" : "3 · Aims at a gap: rules not asked";
+    say(this.title, asked ? "3 · Rules that fire" : unasked);
     const fired = this.blank.map((row, i) =>
       row.map((_, j) => decision?.rules[i * this.columns + j] ?? 0),
     );

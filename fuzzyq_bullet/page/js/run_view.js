@@ -1,5 +1,6 @@
 /** One record on the page: who drives, the reason, the field, and the four cards. */
 import { Acts } from "./acts.js";
+import { Around } from "./around.js";
 import { html, say } from "./dom.js";
 import { Field } from "./field.js";
 import { Controller } from "./inference.js";
@@ -14,12 +15,13 @@ export class RunView {
     this.field = new Field(run, seek);
     this.mode = html("span", { class: "mode" });
     this.sentence = html("span", { class: "sentence" });
-    this.senses = new Senses(run);
-    this.acts = new Acts(run);
     const rules = controller ? new Controller(controller) : null;
+    this.senses = run.lined ? new Senses(run) : null;
+    this.around = run.lined ? null : new Around(run, seek);
+    this.acts = new Acts(run, rules ? 4 : 2);
     this.judges = rules && new Judges(rules);
     this.rules = rules && new Rules(run, rules);
-    const cards = [this.senses, this.judges, this.rules, this.acts].filter(Boolean);
+    const cards = [this.senses, this.around, this.judges, this.rules, this.acts].filter(Boolean);
     this.element = html(
       "article",
       { class: "run" },
@@ -36,18 +38,19 @@ export class RunView {
     const moment = run.at(time);
     const decision = run.decision(playing ? run.heldAt(time) : run.decisionAt(time));
     if (this.decision === undefined || decision?.index !== this.decision?.index) {
-      this.senses.show(decision);
+      this.senses?.show(decision);
       this.judges?.show(decision);
       this.rules?.show(decision);
     }
     this.moment = moment;
     this.decision = decision;
     this.field.show(moment, decision);
+    this.around?.show(moment, decision);
     this.acts.show(moment, decision);
     const mode = decision?.mode ?? "routine";
     this.mode.className = `mode ${moment.over ? run.data.outcome : mode}`;
     const { title, figures } = run.data.end;
-    say(this.mode, moment.over ? "end" : run.data.has_modes ? mode : run.data.planner);
+    say(this.mode, moment.over ? "end" : mode === "routine" ? run.data.routine : mode);
     const ended = `${title} (${figures.replace(/ {3}/g, ", ")})`;
     const sentence = moment.over ? ended : decision?.sentence ?? run.data.waiting;
     say(this.sentence, sentence.replaceAll(" m", "\u00a0m"));

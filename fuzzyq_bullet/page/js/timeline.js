@@ -24,6 +24,9 @@ export class Run {
     this.end = this.ticks.time[this.ticks.time.length - 1];
     this.heldTimes = data.held.map(([time]) => time);
     this.unit = data.robot.radius; // S_p (m)
+    const { lines, twist_speed: twists } = data.decisions;
+    this.lined = lines.some(known); // whether its planner casts detection lines
+    this.twists = Boolean(twists?.some(Number.isFinite)); // whether it asks for twists
   }
 
   /** Return the robot at a time (s): pose, speed, room, and whether the run is over. */

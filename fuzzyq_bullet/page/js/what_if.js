@@ -204,15 +204,16 @@ export class WhatIf {
       ? ["Ahead: ", strong(distance.sets[i].words), `. Sides: `, strong(difference.sets[j].words),
          `. This rule fires most (${fixed(strength)}). `]
       : ["No rule fires. "];
-    const way = Math.round((Math.abs(turn) * 180) / Math.PI) < 1 ? "goes " : "turns ";
+    const way = Math.round((Math.abs(turn) * 180) / Math.PI) < 1 ? "go " : "turn ";
     this.answer.replaceChildren(
-      ...parts, "So the robot ", strong(`${way}${turning(turn)}`), " and steps ", strong(`${fixed(step)}\u00a0m`), ".");
+      ...parts, "So the robot is asked to ", strong(`${way}${turning(turn)}`),
+      " and to step ", strong(`${fixed(step)}\u00a0m`), ".");
     if (!this.changed) {
       say(this.before, "");
       return;
     }
     const [oldTurn, oldStep] = this.inUnits(this.original.infer(this.d, this.df));
-    say(this.before, `Before your changes: ${turning(oldTurn)}, step ${fixed(oldStep)} m.`);
+    say(this.before, `Before your changes: ${turning(oldTurn)}, step asked ${fixed(oldStep)} m.`);
   }
 }
 

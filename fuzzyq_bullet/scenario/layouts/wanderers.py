@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import Field as Given
@@ -13,7 +13,9 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.quantities import DECIMALS, MIN_RADIUS, TOUCH, Count, Model, Number
 from fuzzyq_bullet.scenario.movers import standing_field
 from fuzzyq_bullet.shapes import Cylinder
+from fuzzyq_bullet.shapes.motion import MAX_MOTION_SPEED
 from fuzzyq_bullet.shapes.motions import Speed, Wander
+from fuzzyq_bullet.wording import shorten
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,6 +28,7 @@ STREAM = 21
 START_GAP = 1.0
 """Least gap between the robot at the start and each of them (m): it sees what comes."""
 MOST = 200
+_USUAL_SPEED = (0.1, 0.5)
 _BATCH = 256
 """Places drawn at once. Fixed, so that a larger count begins with those of a smaller one."""
 _MOST_BATCHES = 40
@@ -39,19 +42,25 @@ class Wanderers(Model):
         default=0.25, description="Radius of each (m)."
     )
     speed: tuple[Speed, Speed] = Given(
-        default=(0.1, 0.5), description="Least and greatest speed (m/s); each has its own between."
+        default=_USUAL_SPEED,
+        description="Least and greatest speed (m/s); each has its own between.",
     )
 
-    @field_validator("speed")
+    @field_validator("speed", mode="before")
     @classmethod
-    def _in_order(cls, value: tuple[float, float]) -> tuple[float, float]:
-        if value[0] > value[1]:
-            raise PydanticCustomError(
-                "speed",
-                "must be the least and the greatest speed, got {first} and then {second}",
-                {"first": f"{value[0]:g}", "second": f"{value[1]:g}"},
-            )
-        return value
+    def _two_in_order(cls, value: Any) -> Any:
+        """Refuse what is not a least and a greatest speed; their bounds are checked afterwards."""
+        given = value if isinstance(value, list | tuple) else [value]
+        numbers = [v for v in given if isinstance(v, int | float) and not isinstance(v, bool)]
+        if len(given) == len(numbers) == 2 and not numbers[0] > numbers[1]:
+            return value
+        allowed = numbers and all(0.0 < one <= MAX_MOTION_SPEED for one in numbers)
+        least, greatest = (min(numbers), max(numbers)) if allowed else _USUAL_SPEED
+        raise PydanticCustomError(
+            "speed",
+            "must be the least and the greatest speed (m/s), such as {right}; got {value}",
+            {"right": f"[{least:g}, {greatest:g}]", "value": shorten(value)},
+        )
 
     def draw(
         self, scenario: Scenario, standing: Sequence[Obstacle], seed: int

@@ -1,4 +1,4 @@
-"""Panel 4: what the robot does: heading and step decided, speed, room around, weights in force."""
+"""Panel 4: what the robot is asked for, and what it does: speed, room around, weights in force."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.asked import asks, turning
 from fuzzyq_bullet.video.explanation import aim_name, off_aim, target_of
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.style import ACTION
@@ -17,12 +18,13 @@ from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 if TYPE_CHECKING:
     from fuzzyq_bullet.trajectory import Trajectory
 
-_DIAL = (108, 122)
-_RADIUS = 84
+_DIAL = (108, 108)
+_RADIUS = 72
 _FACTS = 226
 _ROW = 44
 _DECIDED: paint.Box = (6, 26, _FACTS - 4, ACTION.height - 6)
-_BAR: paint.Box = (60, 187, 126, 198)
+_ASKED = (182, 202)
+"""Baselines of the two lines that say what is asked for (pixels)."""
 _WEIGHTS = ("ω1", "ω2", "c_f")
 _SIZES = (24, 22, 20, 18, 16)
 _WEIGHT_AT = (0, 46, 102)
@@ -41,13 +43,9 @@ class Action:
         self._decisions = trajectory.decisions
         self._weighted = bool(np.isfinite(trajectory.decisions.weights).any())
         self._goal = trajectory.scenario.goal.position
-        steps = trajectory.decisions.step
-        known = steps[np.isfinite(steps)]
-        self._longest = max(float(known.max()) if known.size else 0.0, 1e-6)
         card = canvas.image
         card.paste(style.LINE, mask=paint.mask((0, 0, *ACTION.size), _dial_face))
-        paint.write(card, (14, 199), "step", style.MUTED, 17)
-        last = "" if self._weighted else "known free"
+        last = "" if self._weighted else "turning"
         far = "to next target" if trajectory.scenario.via else "distance to goal"
         names = ("speed", far, "nearest thing", last)
         for row, name in enumerate(names):
@@ -61,10 +59,11 @@ class Action:
     def draw(self, moment: Moment) -> None:
         """Draw what is, and what the decision shown wants."""
         index = moment.shown
-        turn = step = math.nan
+        turn = math.nan
+        asked: tuple[tuple[str, str], ...] = ()
         name = ""
         if index != NO_DECISION:
-            step = float(self._decisions.step[index])
+            asked = asks(self._trajectory, index)
             turn = math.radians(round(math.degrees(off_aim(self._trajectory, index))))
             name = aim_name(self._trajectory, index)
         target = self._goal if index == NO_DECISION else target_of(self._trajectory, index)[1]
@@ -73,11 +72,11 @@ class Action:
             f"{abs(moment.speed):.2f} m/s",
             f"{away:.2f} m" if away < 100 else f"{away:.0f} m",
             _metres(moment.clearance),
-            self._last_row(index),
+            self._last_row(index, moment.tick),
         )
         if moment.over and self._trajectory.outcome == "goal":
-            name, step = "", math.nan
-        decided = (turn, step, name) if math.isfinite(turn) else None
+            name, asked = "", ()
+        decided = (turn, asked, name) if math.isfinite(turn) else None
         before, self._shown = self._shown, [*facts, decided]
         for row, (fact, old) in enumerate(zip(facts, before, strict=False)):
             if fact != old:
@@ -85,14 +84,13 @@ class Action:
         if decided is not None and decided != before[-1]:
             image = self._undecided.copy()
             _draw_turn(image, _DECIDED, turn, name)
-            self._draw_step(image, _DECIDED, step)
+            _write_asked(image, _DECIDED, asked)
             self._canvas.paste(image, _DECIDED[:2])
 
-    def _last_row(self, index: int) -> str | tuple[str, ...]:
-        """Return the weights in force and c_f; without weights, how far the way is known free."""
+    def _last_row(self, index: int, tick: int) -> str | tuple[str, ...]:
+        """Return the weights in force and c_f; without weights, how fast the robot turns."""
         if not self._weighted:
-            reach = math.nan if index == NO_DECISION else float(self._decisions.reach[index])
-            return f"{reach:.2f} m" if math.isfinite(reach) else "not checked"
+            return turning(float(self._trajectory.ticks.turn_rate[tick]))
         if index == NO_DECISION:
             return ("–",) * 3
         d = self._decisions
@@ -109,16 +107,14 @@ class Action:
             paint.write(image, (x, 64 + _ROW * row - top), text, style.TEXT, size, bold=True)
         self._canvas.paste(image, (_FACTS, top))
 
-    def _draw_step(self, image: Image.Image, box: paint.Box, step: float) -> None:
-        left, top, right, bottom = _BAR
-        pen = ImageDraw.Draw(image)
-        pen.rectangle((left - box[0], top - box[1], right - box[0], bottom - box[1]), style.LINE)
-        if not math.isfinite(step):
-            return
-        end = left + round(min(max(step / self._longest, 0.0), 1.0) * (right - left))
-        pen.rectangle((left - box[0], top - box[1], end - box[0], bottom - box[1]), style.TEXT)
-        at = (right + 8 - box[0], 199 - box[1])
-        paint.write(image, at, f"{step:.2f} m", style.TEXT, 19, bold=True)
+
+def _write_asked(image: Image.Image, box: paint.Box, asked: tuple[tuple[str, str], ...]) -> None:
+    for (name, value), y in zip(asked, _ASKED, strict=False):
+        paint.write(image, (12 - box[0], y - box[1]), name, style.MUTED, 16)
+        room = _FACTS - 30 - style.text_width(name, 16)
+        text, size = style.fitting(value, room, (19, 17, 15), bold=True)
+        right = (_FACTS - 12 - box[0], y - box[1])
+        paint.write(image, right, text, style.TEXT, size, bold=True, align="r")
 
 
 def _metres(clearance: float) -> str:
@@ -146,7 +142,7 @@ def _draw_turn(image: Image.Image, box: paint.Box, turn: float, name: str) -> No
     shown = min(max(turn, -_WIDEST), _WIDEST)
     x, y = _DIAL
     if not name:
-        at = (x - box[0], 157 - box[1])
+        at = (x - box[0], 142 - box[1])
         paint.write(image, at, "in the goal", style.TEXT, 24, bold=True, align="m")
         return
     around = [(x - _RADIUS, y - _RADIUS), (x + _RADIUS, y + 12)]
@@ -167,8 +163,8 @@ def _draw_turn(image: Image.Image, box: paint.Box, turn: float, name: str) -> No
     paint.stamp(image, box, around, 4, style.TEXT, needle)
     degrees = round(math.degrees(abs(turn)))
     text = "straight" if degrees < 1 else f"{degrees}° {'left' if turn > 0 else 'right'}"
-    paint.write(image, (x - box[0], 157 - box[1]), text, style.TEXT, 24, bold=True, align="m")
-    below = (x - box[0], 176 - box[1])
+    paint.write(image, (x - box[0], 142 - box[1]), text, style.TEXT, 24, bold=True, align="m")
+    below = (x - box[0], 161 - box[1])
     paint.write(image, below, f"{'to' if degrees < 1 else 'of'} {name}", style.MUTED, 16, align="m")
 
 

@@ -165,8 +165,8 @@ class Fuzzification:
             near = self._near.draw("to the goal:", math.nan, self._blank[0])
             side = self._side.draw("sides:", math.nan, self._blank[1])
         else:
-            # With a clear way to the goal the planner does not look aside: Df is simply 0.
-            said = ("way is clear", "not asked") if is_clear(d, decision) else ("", "")
+            # With a clear way to its aim the planner takes Df as 0, whatever it measures aside.
+            said = ("way is clear", "taken as alike") if is_clear(d, decision) else ("", "")
             name, df = aim_name(self._trajectory, decision), float(d.difference[decision])
             name = name.partition(" of ")[0]  # of via points the number alone; there is no room
             near = self._near.draw(

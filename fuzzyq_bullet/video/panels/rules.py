@@ -1,8 +1,8 @@
 """Panel 3: the rule table, each rule an arrow of its turn and step, lit as strongly as it fires.
 
 Turn and step are weighed, where the weights of the rule are known: the robot's own, or those that
-this rule has learned. Where the robot aims at a gap exactly the rules are not asked, and the table
-is grey. In the goal no rule is lit.
+this rule has learned. Where the robot aims at a gap exactly, or gives way, the rules are not asked,
+and the table is grey. In the goal no rule is lit.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.controllers import controller_shown
+from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.planning.fuzzy_q_lambda import rule_policy, weights_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, WeightsSettings
 from fuzzyq_bullet.video import paint, style
@@ -40,7 +41,7 @@ _LEVELS = 32
 _UNLIT: style.Colour = (38, 45, 56)
 _GREY: style.Colour = (84, 92, 104)
 """A rule that fires fully, and is not asked."""
-_FIRE, _AIMS, _ARRIVED = "3  RULES THAT FIRE", "3  AIMS AT A GAP", "3  RULES NOT ASKED"
+_FIRE, _AIMS, _NOT_ASKED = "3  RULES THAT FIRE", "3  AIMS AT A GAP", "3  RULES NOT ASKED"
 
 
 class Rules:
@@ -56,9 +57,7 @@ class Rules:
         base = controller_shown(trajectory.scenario.planner).base
         turn_unit = float(getattr(trajectory.scenario.planner, "turn_unit", math.radians(45.0)))
         self._rows, self._columns = len(base.row.sets), len(base.column.sets)
-        # Where the left is freer stands on the left, in whatever order a file lists its sets.
-        leftmost = sorted(range(self._columns), key=lambda i: -base.column.sets[i].center)
-        self._places = {column: place for place, column in enumerate(leftmost)}
+        self._places = {column: place for place, column in enumerate(base.column.falling)}
         self._cell = _TABLE[0] // max(self._columns, 2), _TABLE[1] // max(self._rows, 3)
         weights = rule_weights(trajectory).reshape(self._rows, self._columns, 2)
         self._arrows = [
@@ -98,12 +97,14 @@ class Rules:
         self._drawn = decision, arrived
         strengths = np.zeros((self._rows, self._columns))
         asked = not arrived
+        at_gap = False
         if decision != NO_DECISION and not arrived:
             asked = is_asked(self._decisions, decision)
+            at_gap = self._decisions.mode[decision] != MODES.index("routine")
             strengths = np.clip(np.nan_to_num(self._decisions.rules[decision]), 0.0, 1.0)
         strongest = float(strengths.max())
         changed = []
-        title = _ARRIVED if arrived else _FIRE if asked else _AIMS
+        title = _FIRE if asked else _AIMS if at_gap else _NOT_ASKED
         if title != self._title:
             self._title = title
             self._canvas.rename(title)

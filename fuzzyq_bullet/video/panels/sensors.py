@@ -9,8 +9,9 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.asked import metres
 from fuzzyq_bullet.video.explanation import aim_name, is_clear
-from fuzzyq_bullet.video.footprints import Floats, arrow, clipped, corners_for, corridor
+from fuzzyq_bullet.video.footprints import Floats, arrow, circle, clipped, corners_for, corridor
 from fuzzyq_bullet.video.meshes import walls_of
 from fuzzyq_bullet.video.movers import DrawnMovers
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
@@ -26,7 +27,7 @@ _DIAMETER = _LENS[2] - _LENS[0]
 _FACTOR = 2
 _COLUMN: paint.Box = (192, 26, 314, 208)
 _ROW = 38
-_NO_LINES = ("This planner", "casts no", "detection", "lines. Arrow:", "its heading.")
+_NO_LINES = ("This planner", "casts no", "detection lines.")
 _MOST = 400
 """Obstacles drawn in the close-up at most: the nearest."""
 _LARGE = 50.0
@@ -101,6 +102,9 @@ class Sensors:
         for wall in self._walls:
             _fill(pen, at, wall, near, style.WALL)
 
+        if sensed is not None and not sensed.lines:
+            seen_to = circle((float(here[0]), float(here[1])), self._radius + self._range)
+            pen.line(at(np.asarray(seen_to)), style.FAINT, 2 * _FACTOR)
         if sensed is not None:
             for (heading, length), colour in zip(sensed.lines, style.LINES, strict=False):
                 if length < self._range:  # as far as it could see, were nothing there
@@ -132,8 +136,7 @@ class Sensors:
 
     def _write_numbers(self, image: Image.Image, index: int) -> None:
         if not np.isfinite(self._decisions.lengths).any():
-            for row, words in enumerate(_NO_LINES):
-                paint.write(image, (4, 40 + 24 * row), words, style.MUTED, 16)
+            self._write_heading(image, index)
             return
         lengths = (
             [math.nan] * 3 if index == NO_DECISION else self._decisions.lengths[index].tolist()
@@ -158,13 +161,32 @@ class Sensors:
         if math.isfinite(lengths[0] - lengths[2]):
             value = f"{lengths[0] - lengths[2] + 0.0:+.2f} m"
         if math.isfinite(difference):
-            # A planner with a clear way to the goal does not look aside: it takes Df as 0.
-            asked = not is_clear(self._decisions, index)
-            value = value if asked else "not asked"
-            told = f"Df {difference + 0.0:+.1f}" if asked else "Df 0"
+            # A planner with a clear way takes Df as 0, whatever it measures at its sides.
+            clear = is_clear(self._decisions, index)
+            told = "taken as 0" if clear else f"Df {difference + 0.0:+.1f}"
         for down, text, size in ((34, value, 21), (57, told, 21)):
             text, size = style.fitting(text.replace("-", "−"), 108, (size, 19, 17), bold=True)
             paint.write(image, (14, top + down), text, style.TEXT, size, bold=True)
+
+    def _write_heading(self, image: Image.Image, index: int) -> None:
+        """Write where a planner without lines heads, seen from its nose, and how far it sees."""
+        rows = [("sees up to", metres(self._range))]
+        if index != NO_DECISION:
+            tick = int(self._decisions.tick[index])
+            facing = float(self._trajectory.ticks.heading[tick])
+            turn = math.remainder(float(self._decisions.heading[index]) - facing, math.tau)
+            degrees = round(math.degrees(abs(turn)))
+            told = "ahead" if degrees < 1 else f"{degrees}° {'left' if turn > 0 else 'right'}"
+            rows.insert(0, ("arrow: heading", told))
+        for row, (name, value) in enumerate(rows):
+            top = 10 + 48 * row
+            name, size = style.fitting(name, image.width - 6, (16, 15, 14))
+            paint.write(image, (4, top + 12), name, style.MUTED, size)
+            value, size = style.fitting(value, image.width - 6, (22, 20, 18), bold=True)
+            paint.write(image, (4, top + 35), value, style.TEXT, size, bold=True)
+        for row, words in enumerate(_NO_LINES):
+            words, size = style.fitting(words, image.width - 6, (15, 14, 13))
+            paint.write(image, (4, 128 + 20 * row), words, style.MUTED, size)
 
 
 def _mark_aim(pen: ImageDraw.ImageDraw, aim: Floats, middle: float) -> None:
