@@ -23,12 +23,15 @@ from fuzzyq_bullet.scenario import (
     realise,
 )
 from fuzzyq_bullet.sensors import (
+    SENSOR_MARGIN,
     SENSORS,
+    SPREAD,
     CorridorSensor,
     ExactSensor,
     SensorModel,
     register_sensor,
 )
+from fuzzyq_bullet.sensors.noise import RayNoise
 
 HEADINGS = [0.0, 1.0, 2.0, 0.0]
 
@@ -155,3 +158,23 @@ def test_whatever_a_model_tells_a_line_stays_within_the_range(world):
         sensor = sensor_of(world, Blind(model="blind", told=told)).at((2.0, 2.0))
         assert sensor.sense([0.0, 1.0]) == [expected] * 2
         assert sensor.look([0.0])[0] == min(told, FUZZYQ.sensor_range + 0.22)
+
+
+def test_what_is_too_near_for_a_ray_is_told_by_the_rays_farther_aside():
+    near, blind, model = 0.25, 0.3, ExactSensor(model="exact", blind=0.3)
+
+    def wall(starts, ends):
+        """A wall across whichever way a line goes."""
+        return [
+            min(1.0, near / max(math.dist(a, b), 1e-9)) for a, b in zip(starts, ends, strict=True)
+        ]
+
+    rng = np.random.default_rng(0)
+    noise = RayNoise(model, rng, rng)
+    sensor = CorridorSensor(model, wall, FUZZYQ, rng, noise=noise)
+    wide = FUZZYQ.radius + SENSOR_MARGIN
+    aside = wide * SPREAD
+    seen = aside[np.hypot(near, aside) >= blind]
+    assert 0 < len(seen) < len(aside)
+    expected = near - np.sqrt(wide**2 - seen**2).max()
+    assert sensor.sense((0.0, 0.0), [0.3, 2.0]) == pytest.approx([expected] * 2)
