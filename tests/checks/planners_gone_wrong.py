@@ -25,6 +25,7 @@ DECISIONS = {
     "weights": Decision(heading=0.0, step=0.2, weights="ab"),
     "turn": Decision(heading=0.0, step=0.2, turn=1e300),
     "hopeless": Decision(heading=0.0, step=0.2, hopeless="perhaps"),
+    "backward": Decision(heading=0.0, step=0.2, backward=1),
     "overflow": Decision(heading=0.0, step=10**400),
     "none": None,
     "tuple": (0.0, 0.2),

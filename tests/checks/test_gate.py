@@ -54,6 +54,7 @@ WAYS = {
     "weights": "explained its decision by the weights 'a', which is no number",
     "turn": "explained its decision by the turn 1e+300, which is no number",
     "hopeless": "decided hopeless 'perhaps', not True or False",
+    "backward": "decided backward 1, not True or False",
     "overflow": "decided the step",
     "cancels": "stopped by CancelledError, after 0.00 s",
     "forks": "returned None instead of a Decision",

@@ -1,4 +1,4 @@
-"""Passive safety looks where the robot drives, and knows what to do where nothing is safe."""
+"""Passive safety looks where the robot drives, and lets it go on if it would be run into else."""
 
 from __future__ import annotations
 
@@ -42,6 +42,12 @@ def after_a_while(
 @pytest.mark.parametrize("side", [100.0, -100.0])
 def test_it_drives_on_before_one_that_comes_from_beside_it(side: float) -> None:
     assert after_a_while(math.radians(side), 0.06).reach == ON.reach
+
+
+@pytest.mark.parametrize("side", [80.0, -80.0])
+def test_it_does_not_creep_where_it_would_be_run_into(side: float) -> None:
+    # To creep is passively safe: the robot would stand for 0.3 s before the contact.
+    assert after_a_while(math.radians(side), 0.15, speed=0.1).reach == ON.reach
 
 
 @pytest.mark.parametrize("side", [0.0, 30.0, -30.0])

@@ -8,7 +8,7 @@ from fuzzyq_bullet.planning.aim import Aim
 from fuzzyq_bullet.planning.base import Floats, Observation
 from fuzzyq_bullet.planning.cost_to_go import NO_HITS
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.planning.traffic.give_way import GiveWay, goes_clearer
+from fuzzyq_bullet.planning.traffic.give_way import GiveWay, must_go_on
 from fuzzyq_bullet.planning.traffic.passive_safety import PassiveSafety
 from fuzzyq_bullet.planning.traffic.tracker import Tracker, Traffic
 
@@ -60,12 +60,12 @@ class TrafficAvoidance:
     def limit(self, decision: Decision, observation: Observation) -> Decision:
         """Return the decision, limited so that the robot is passively safe.
 
-        If nothing is, not even to brake, the robot does what keeps it farther from what moves.
+        It is not limited if only going on leads clear: a robot that brakes would be run into.
         """
         if self._traffic is None:
             return decision
         limited = self._safety.limit(decision, observation, self._traffic)
-        if not self._safety.has_way_out and goes_clearer(decision, observation, self._traffic):
+        if limited.reach < decision.reach and must_go_on(decision, observation, self._traffic):
             limited = decision
         self._waits = self._waits or limited.reach < decision.reach
         return limited

@@ -105,8 +105,8 @@ class GiveWay:
         return np.asarray(progress + GAP_WEIGHT * gap - TURN_COST * turn + HYSTERESIS * same)
 
 
-def goes_clearer(decision: Decision, observation: Observation, traffic: Traffic) -> bool:
-    """Return whether a decision leads clear of what moves, and farther from it than braking.
+def must_go_on(decision: Decision, observation: Observation, traffic: Traffic) -> bool:
+    """Return whether a decision leads clear of what moves, and braking leads into a contact.
 
     Args:
         decision: A decision that the safety filter has passed.
@@ -124,7 +124,7 @@ def goes_clearer(decision: Decision, observation: Observation, traffic: Traffic)
     )
     gaps, _ = predict(observation, motion, pair, traffic, margins=False)
     goes_on, stands = gaps.min(axis=0).tolist()
-    return bool(goes_on > max(stands, 0.0))
+    return bool(goes_on > 0.0 >= stands)
 
 
 def _choose(

@@ -63,11 +63,6 @@ class PassiveSafety:
         # World heading (rad), and whether the robot backs up.
         self._way_out: tuple[float, bool] | None = None
 
-    @property
-    def has_way_out(self) -> bool:
-        """Whether the latest decision was passively safe."""
-        return self._way_out is not None
-
     def limit(self, decision: Decision, observation: Observation, traffic: Traffic) -> Decision:
         """Return the decision, limited so that the robot is passively safe.
 
