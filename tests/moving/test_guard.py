@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -11,7 +13,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fuzzyq_bullet import CommandSettings, Decision, Scenario, TwistCommand, WheelCommand, run
+from fuzzyq_bullet import (
+    CommandSettings,
+    Decision,
+    Scenario,
+    TwistCommand,
+    WheelCommand,
+    run,
+)
 from fuzzyq_bullet.episode import Episode, run_with, world_of
 from fuzzyq_bullet.fault import at_fault
 from fuzzyq_bullet.planning import QLambdaSettings, settings_for
@@ -22,9 +31,11 @@ from fuzzyq_bullet.planning.traffic.twist_safety import rollout_twists, safe_twi
 from fuzzyq_bullet.planning.twist_filter import twist_filter
 from fuzzyq_bullet.scenario import Limits, random_task, realise
 from fuzzyq_bullet.scenario.layouts import Wanderers
+from tests.helpers.commands import Call
 from tests.moving.test_tracking import pillar, reading
 from tests.planning.peers.helpers import MOTION
 
+EXAMPLE = Path(__file__).parents[2] / "examples" / "closing_speed.py"
 ACROSS = {"kind": "patrol", "points": [(3.0, 7.0), (3.0, 3.0)], "speed": 0.45}
 STANDS = {"kind": "still"}
 
@@ -219,6 +230,17 @@ def test_the_planner_reckons_with_the_speed_that_its_settings_say(name):
 def test_the_guard_that_takes_everything_to_stand_is_at_fault():
     planner = Settings(guard=True, closing_speed=0.0)
     assert at_fault(run_with(Always(TwistCommand(0.6, 0.0)), crossing(planner=planner))) is True
+
+
+def test_the_example_has_a_planner_for_each_closing_speed(tmp_path, fuzzyq: Call):
+    told = {**crossing(ACROSS).model_dump(mode="json"), "planner": "closing-0.2"}
+    (tmp_path / "s.json").write_text(json.dumps({**told, "limits": {"time": 0.2}}))
+    done = fuzzyq("run", "s.json", "--plugin", EXAMPLE, "--no-video", cwd=tmp_path)
+    assert done.returncode == 1, done.stderr  # its time is over
+    [record] = tmp_path.rglob("*.npz")
+    with np.load(record) as arrays:
+        meta = json.loads(str(arrays["meta"]))
+    assert meta["scenario"]["planner"] == {"name": "closing-0.2", "closing_speed": 0.2}
 
 
 def test_a_record_says_the_closing_speed_only_if_it_was_said():
