@@ -29,8 +29,8 @@ WIDEST = 480
 HEAD = """\
 # Gallery
 
-Every bundled scenario, driven with its own settings and drawn from above. The command below a picture drives the
-scenario and films it. `make gallery` makes this page.
+Every bundled scenario, driven with its own settings and drawn from above. The command below
+a picture drives the scenario and films it. `make gallery` makes this page.
 
 | in a picture | what it is |
 |---|---|
@@ -39,7 +39,8 @@ scenario and films it. `make gallery` makes this page.
 | blue line | its path |
 | red line | a breakout: the way to the goal is blocked |
 | orange line | the robot follows an obstacle |
-| purple diamond, blue square | the temporary goal of a breakout; where the robot leaves the obstacle |
+| purple diamond | the temporary goal of a breakout |
+| blue square | the robot leaves the obstacle |
 | brown | what moves, where it was at the end, and its way |
 | red cross | a collision |
 

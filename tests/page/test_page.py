@@ -161,6 +161,31 @@ def test_the_band_shows_modes_and_events_where_they_are(show: Open, drive: Traje
     assert browser.value(TIME) == pytest.approx(changes[1], abs=1e-3)
 
 
+@pytest.mark.slow
+def test_a_planner_without_rules_and_lines_shows_what_it_has_and_nothing_empty(show: Open) -> None:
+    browser = show("plain")
+
+    def texts(selector: str) -> list[str]:
+        chosen = f"document.querySelectorAll({json.dumps(selector)})"
+        return list(browser.value(f"[...{chosen}].map((one) => one.textContent)"))
+
+    assert texts(".card h3") == ["1 · Senses", "2 · Acts"]
+    assert said(browser, ".mode") == "improved-fuzzy"
+    assert texts(".legend li") == ["path"]
+    assert texts(".acts dt")[:2] == ["step asked", "known free"]
+    # The close-up has a robot, an arrow and a ring, in more than one colour.
+    colours = browser.value(
+        "(() => { const one = document.querySelector('.around canvas');"
+        " const { data } = one.getContext('2d').getImageData(0, 0, one.width, one.height);"
+        " return new Set(new Uint32Array(data.buffer)).size; })()"
+    )
+    assert colours > 10
+    browser = show("one")
+    assert [*map(str.strip, texts(".legend li"))][-3:] == ["routine", "breakout", "following"]
+    assert texts(".card h3")[0] == "1 · Senses"
+    assert texts(".acts dt")[:2] == ["step asked", "known free"]
+
+
 # Mouse, touch and keys
 
 
@@ -452,7 +477,7 @@ def test_a_planner_without_rules_has_no_rules_on_its_page(show: Open) -> None:
     browser = show("plain")
     browser.press("ArrowRight")
     assert browser.value("document.querySelectorAll('.judges, .rules, .what-if').length") == 0
-    assert "no detection lines" in said(browser, ".senses")
+    assert "No detection lines" in said(browser, ".around")
 
 
 # The file

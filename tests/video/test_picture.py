@@ -477,9 +477,10 @@ def test_marks_that_would_cover_each_other_are_one() -> None:
     run = drive(scenario(0, 0), seconds=3.0, outcome="timeout")
     mode = np.arange(len(run.decisions.mode)) % 2  # breaks out anew at every other decision
     marks = Avoidance(replace(run, decisions=replace(run.decisions, mode=mode))).marks
-    assert 2 < sum(mark.begins for mark in marks) < mode.sum()
-    assert 2 < sum(not mark.begins for mark in marks) < mode.sum()
-    assert min(math.dist(a.point, b.point) for a, b in combinations(marks, 2)) > 0.05
+    for begins in (True, False):
+        points = [mark.point for mark in marks if mark.begins == begins]
+        assert 2 < len(points) < mode.sum()
+        assert min(math.dist(a, b) for a, b in combinations(points, 2)) > 0.05
 
 
 def test_marks_and_outline_drawn_step_by_step_are_those_of_one_frame(freed: Trajectory) -> None:
