@@ -16,7 +16,7 @@ from tests.soak.watched import Watched, kill
 
 Kind: TypeAlias = Literal["worker", "command", "disk"]
 ROOT = Path(__file__).resolve().parents[2]
-STUDY = Path(__file__).with_name("soak_study.py")
+PLUGIN = Path(__file__).with_name("plugin.py")
 QUIET = 0.75
 """Part of the episodes after which nothing is disturbed: memory is watched there. Nor is an episode
 killed twice there, whose row would say so: those that were killed are done again at the end."""
@@ -128,7 +128,7 @@ class Sweep:
         self._rng = random.Random(seed + 1 + len(ledger.done))
         self._due = planned(episodes, seed, disk=may_fill)[len(ledger.done) :]
         self.command = [
-            *(sys.executable, "-m", "fuzzyq_bullet", "bench", "soak", "--plugin", str(STUDY)),
+            *(sys.executable, "-m", "fuzzyq_bullet", "bench", "soak", "--plugin", str(PLUGIN)),
             *("--episodes", str(episodes), "--seed", str(seed), "--jobs", str(jobs)),
             *("--out", str(self.folder)),
         ]

@@ -1,8 +1,6 @@
 """The study that the soak disturbs: every planner in every kind of field, every record kept.
 
-    fuzzyq bench soak --plugin tests/soak/soak_study.py --episodes 100 --jobs 2
-
-A plugin, because nobody but those who change the package needs it.
+It is known to the command line by ``plugin.py`` alone: whoever imports it here registers nothing.
 """
 
 from __future__ import annotations
@@ -28,7 +26,6 @@ from fuzzyq_bullet.studies import (
     Study,
     Table,
     described,
-    register_study,
 )
 from fuzzyq_bullet.studies.episodes import Job
 from fuzzyq_bullet.studies.plan import Episode, PlannerDescription, Seed
@@ -137,7 +134,6 @@ def work(order: dict[str, Any]) -> dict[str, Any]:
     return answer(Done(done.row, kept[0].to_bytes() if kept else None))
 
 
-@register_study
 class Soak(Study):
     """Run every planner in every kind of field, with both drives, and keep every record."""
 

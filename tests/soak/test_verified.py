@@ -7,10 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from fuzzyq_bullet.studies import study_names
 from fuzzyq_bullet.studies.storage import rows_in
 from fuzzyq_bullet.studies.sweep import sweep
 from fuzzyq_bullet.workers import Pool
-from tests.soak.disturbed import Ledger, planned
+from tests.helpers.commands import Call
+from tests.soak.disturbed import PLUGIN, Ledger, planned
 from tests.soak.soak_study import Soak, work
 from tests.soak.verified import (
     faults_of_digests,
@@ -113,3 +115,16 @@ def test_what_happens_is_the_same_for_the_same_seed_and_ends_before_the_quiet_pa
     kinds = [one.kind for one in told]
     assert [kinds.count(kind) for kind in ("worker", "command", "disk")] == [80, 4, 1]
     assert all(0 < one.rows < 1500 for one in told)
+
+
+def test_the_study_is_registered_for_no_other_test_that_runs_in_this_process() -> None:
+    assert STUDY.name not in study_names()
+
+
+@pytest.mark.slow
+def test_its_plugin_makes_it_a_command_whose_workers_find_it(fuzzyq: Call, tmp_path: Path) -> None:
+    command = ("bench", "soak", "--plugin", PLUGIN, "--episodes", 2, "--jobs", 1)
+    done = fuzzyq(*command, "--out", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    rows = rows_in(tmp_path / "out" / "journal.jsonl")
+    assert [row.error for row in rows] == [None, None]
