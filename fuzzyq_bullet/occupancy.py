@@ -125,7 +125,8 @@ class OccupancyGrid:
 
     def _number(self, cell: tuple[int, int]) -> int:
         """Return the number of a cell in the graph."""
-        return cell[0] * self.free.shape[1] + cell[1]
+        column, row = cell
+        return int(column * self.free.shape[1] + row)
 
     def _graph(
         self, moves: Moves, price: Floats | None = None, *, past_corners: bool = False

@@ -84,9 +84,9 @@ class Motion:
         return max(1.0, USUAL_SPEED / self.max_speed, half_turn / USUAL_HALF_TURN)
 
 
-def sees_far(range: float, unit: float) -> bool:
+def sees_far(reach: float, unit: float) -> bool:
     """Return whether a range (m) is more than the paper's lines reach, 5·S_p; ``unit`` is S_p."""
-    return range > USUAL_RANGE * unit * (1.0 + 1e-9)
+    return reach > USUAL_RANGE * unit * (1.0 + 1e-9)
 
 
 class RangeSensor:

@@ -23,13 +23,14 @@ NO_HITS = np.zeros((0, 2))
 GRAIN = 0.03
 """Hits no farther apart than about this are one (m)."""
 CLOSE = 1e-6
+"""How much nearer (m) a third point must be to count as between two."""
 NARROWER = 1.0
 """How many cells narrower than the disc the cells of an open path may be."""
 SPARE = 0.5
-"""With so little room on either side, in cells, a gap is tight."""
+"""With less room than this around the disc, in cells, a place is tight."""
 THICK = 1.5
-"""How far from the middle of a gap that is too narrow the cells are closed, in cells: two cells deep
-wherever the disc leaves any free, so that no move of ``SIXTEEN`` jumps over them."""
+"""How far from the middle of a gap that is too narrow the cells are closed, in cells. So they are
+closed two cells deep in all of the gap, and no move of ``SIXTEEN`` jumps over them."""
 MOST = 50_000
 MARGIN = 1.0
 """How far the grid reaches beyond everything known (m)."""
@@ -41,7 +42,8 @@ class ObstacleMap:
 
     def __init__(self) -> None:
         # Loading it takes long: not while the robot drives, and not when a scenario is only read.
-        import scipy.sparse.csgraph  # noqa: F401
+        import scipy.sparse.csgraph
+        import scipy.spatial  # noqa: F401
 
         self._ends = np.zeros((4, 0))  # rows: x and y of one end, x and y of the other
         self._hits = NO_HITS  # in grains
@@ -107,9 +109,9 @@ class ObstacleMap:
     def open_grid(self, points: Sequence[Point]) -> tuple[OccupancyGrid, Flags] | None:
         """Return an occupancy grid on which every gap is open that the disc gets through.
 
-        Cells are free from where the disc may be one cell narrower. So no gap closes only because of
-        where the cells lie. But where two points that rays have hit are nearer to each other than
-        the disc is wide, it does not get through between them: the middle between them is closed.
+        The free cells have room for a disc that is one cell narrower. So no gap closes only because
+        of where the cells lie. The gap between two points that rays have hit is closed at its
+        middle if it is narrower than the disc.
 
         The grid is aligned: however much is known, its cells lie at the same places. So a cell that
         was closed once stays closed.
@@ -118,8 +120,9 @@ class ObstacleMap:
             points: Points (m) that the grid holds.
 
         Returns:
-            The grid, and in which of its cells the whole disc does not fit; None if the cells are
-            as wide as the disc: then the grid would be meaningless.
+            The grid, and which of its cells are tight: the disc with half a cell of room around it
+            does not fit there. None if the cells are as wide as the disc: then the grid would be
+            meaningless.
         """
         grid = _free_grid(_least(self._low, *points), _greatest(self._high, *points), aligned=True)
         least = self._radius - NARROWER * grid.cell
@@ -191,7 +194,8 @@ def _too_narrow(hits: Floats, least: float, wide: float) -> Floats:
     _, first = np.unique((middles / GRAIN).round(), return_index=True)
     found = np.column_stack([middles[first].real, middles[first].imag])
     nearest, _ = tree.query(found, distance_upper_bound=least / 2.0 - CLOSE)
-    return found[np.isinf(nearest)]
+    between: Floats = found[np.isinf(nearest)]
+    return between
 
 
 def _least(*points: Sequence[float]) -> Point:

@@ -7,11 +7,7 @@ Tovey 2003).
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-
 import numpy as np
-from numpy.typing import NDArray
 
 from fuzzyq_bullet.occupancy import SIXTEEN, OccupancyGrid
 from fuzzyq_bullet.planning.base import USUAL_SPEED

@@ -36,14 +36,12 @@ WIDEST = 0.05
 """Rays are always nearer to each other than this (m): a right angle that points between two of them
 then comes no nearer than half of it unseen, which the safety filter's reserve makes up for."""
 BESIDE = 0.002
-"""So far outside the robot's own side (m) runs the last ray but one where the robot sees far. In
-the usual range it runs where it always did, which for a robot of more than 0.2 m is within its
-side: what it meets at a flat angle may then come nearer than this."""
+"""How far outside the robot's own side the last ray but one runs if it sees far (m). With the
+usual range it runs where ``SPREAD`` says: for a robot of more than 0.2 m within its side, so that
+what is met at a flat angle may come nearer."""
 
 
-def offsets(
-    half_width: float, spacing: float = WIDEST, side: float = float(SPREAD[-2])
-) -> Floats:
+def offsets(half_width: float, spacing: float = WIDEST, side: float = float(SPREAD[-2])) -> Floats:
     """Return the offsets of rays on either side, as parts of a line's half width.
 
     They are those of ``SPREAD``, and as many in between as are needed.

@@ -14,6 +14,7 @@ from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.robots import FUZZYQ
+from fuzzyq_bullet.robots.jackal import JACKAL
 from fuzzyq_bullet.scenario import MIN_RADIUS, Arena, Box, Cylinder
 from fuzzyq_bullet.sensors import (
     SENSOR_MARGIN,
@@ -201,6 +202,24 @@ def test_rays_are_as_near_to_each_other_as_is_asked_for(half, spacing):
     assert np.diff(both).max() < min(max(spacing, FINEST), WIDEST) + 1e-9
     assert np.abs(aside[:, None] - half * SPREAD).min(axis=0).max() < 1e-9
     assert (offsets(FUZZYQ.radius + SENSOR_MARGIN) == SPREAD).all()  # the paper's robot
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("robot", [FUZZYQ, JACKAL])
+def test_who_sees_far_is_stopped_by_what_would_graze_its_side(engine, robot, side):
+    # What stands beside the robot takes the outermost ray; a flat graze ahead must be met without.
+    beside = cylinder(3.0, 3.0 + side * (robot.radius + 0.01 + 0.1), 0.1)
+
+    def ahead(clearance):
+        aside = 3.0 + side * (robot.radius + clearance + 0.1)
+        world = SensorWorld([beside, cylinder(4.0, aside, 0.1)], FIELD, engine=engine)
+        told = ExactSensor(range=3.0 if robot is JACKAL else 1.5)
+        sensor = CorridorSensor(told, world.cast, robot, np.random.default_rng(0))
+        [free] = sensor.sense((3.0, 3.0), [0.0])
+        return free
+
+    assert ahead(0.001) < 1.0
+    assert ahead(0.003) > 1.2
 
 
 @pytest.mark.parametrize("length", [0.6, 4.0])

@@ -75,10 +75,11 @@ ANGLES = np.radians([0.0, 12.0, 30.0, 45.0, 77.0])
 def test_a_gap_is_open_if_the_disc_gets_through_wherever_the_cells_lie(wider, angle, shift):
     """Between the round ends of two walls: of an edge, the very end may not be among the hits."""
     middle = WIDE + wider / 2 + 0.1
+    above = np.array([0.0, middle])
     around = np.linspace(0.0, math.tau, 40)
     ends = 0.1 * np.column_stack([np.cos(around), np.sin(around)])
     wall = points(((0.0, -3.0), (0.0, -middle)), ((0.0, middle), (0.0, 3.0)))
-    hits = np.concatenate([wall, ends + (0.0, middle), ends - (0.0, middle)])
+    hits = np.concatenate([wall, ends + above, ends - above])
     hits = np.column_stack(turned(hits.T, angle, shift))
     obstacles = ObstacleMap()
     obstacles.add(hits[None, :2], hits, WIDE)
@@ -101,9 +102,7 @@ def test_between_posts_that_stand_too_close_leads_no_path(angle, shift):
 def test_a_fast_robot_goes_round_where_a_slow_one_squeezes_through():
     gap = 2 * WIDE + 0.02
     obstacles = seen(((2.0, -3.0), (2.0, -gap / 2)), ((2.0, gap / 2), (2.0, 1.3)))
-    through, around = (
-        open_path(obstacles, (0.0, 0.0), (4.0, 0.0), speed) for speed in (0.6, 2.0)
-    )
+    through, around = (open_path(obstacles, (0.0, 0.0), (4.0, 0.0), speed) for speed in (0.6, 2.0))
     assert length(through) < 4.3 < 5.0 < length(around) < 5.8
 
 
