@@ -134,17 +134,15 @@ class Sweep:
         ]
 
     def run(self) -> None:
-        """Start the command again and again until it is done."""
+        """Start the command again whenever it was made to end, until it ends by itself."""
         self.temporary.mkdir(parents=True, exist_ok=True)
         self._filler.unlink(missing_ok=True)
         status = None
-        while status != 0:
+        while status is None:
             self._ledger.note("life", self._rows())
             status = self._live()
-            if status not in (0, None):
-                self._ledger.note("fault", f"the command ended with {status}: {self._last_words()}")
-                if len(self._ledger.faults) > 20:
-                    raise SystemExit("too many faults; see the ledger")
+        if status != 0:
+            self._ledger.note("fault", f"the command ended with {status}: {self._last_words()}")
 
     def _live(self) -> int | None:
         """Run the command until it ends; return its exit code, None if it was made to end."""

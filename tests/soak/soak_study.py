@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
 from itertools import count, islice
 from pathlib import Path
 from typing import Any, ClassVar
@@ -46,7 +47,8 @@ FIELDS: tuple[tuple[str, int | None], ...] = (
 """Layouts of the random fields, with their numbers of obstacles."""
 DRIVES: tuple[Drive, ...] = ("wheels", "kinematic")
 ON_WHEELS_ALONE = ("process",)
-"""Its program commands speeds, and the kinematic drive tells it of no greatest one."""
+"""Its program commands speeds, and the kinematic drive tells it of no greatest one. Others say
+themselves that they need wheels."""
 OWN: Mapping[str, PlannerSettings] = {
     "process": ProcessSettings(
         command=(sys.executable, str(ROOT / "examples" / "controllers" / "gap.py")),
@@ -60,11 +62,16 @@ OWN: Mapping[str, PlannerSettings] = {
 
 
 def all_planners() -> dict[str, PlannerSettings]:
-    """Return every planner that is registered, by its name."""
+    """Return every planner that can be built here, by its name."""
     return {
         name: OWN.get(name) or settings_for(name).model_validate({"name": name})
         for name in planner_names()
+        if name != "navground" or find_spec("navground") is not None
     }
+
+
+def _needs_wheels(planner: str) -> bool:
+    return planner in ON_WHEELS_ALONE or settings_for(planner).needs_wheels
 
 
 class SoakJob(Job):
@@ -110,7 +117,7 @@ class SoakPlan(Plan):
             for where in self.environments()
             for name in self.planners
             for drive in DRIVES
-            if drive == "wheels" or name not in ON_WHEELS_ALONE
+            if drive == "wheels" or not _needs_wheels(name)
         )
         return islice(endless, self.episodes)
 
@@ -144,7 +151,7 @@ class Soak(Study):
     episodes: int = Field(2000, ge=1, le=1_000_000, description="How many.")
 
     def planner_set(self) -> Mapping[str, PlannerSettings]:
-        """Return all that are registered."""
+        """Return all that can be built here."""
         return all_planners()
 
     def plan(self) -> SoakPlan:
