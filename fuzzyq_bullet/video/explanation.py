@@ -198,7 +198,7 @@ def _ends(trajectory: Trajectory, index: int) -> str:
 def _makes_way(trajectory: Trajectory, index: int) -> str:
     """Return that the robot waits for what comes, or gives way to it, if it does."""
     decisions, tick = trajectory.decisions, int(trajectory.decisions.tick[index])
-    backs_up = decisions.backward is not None and bool(decisions.backward[index])
+    backs_up = decisions.backward is not None and decisions.backward[index] == 1.0
     if (backs_up or gives_way(trajectory, index)) and float(decisions.reach[index]) >= _STANDS:
         coming = approaching(trajectory, tick) or "Something moves near by"
         return f"{coming}: {'backs up' if backs_up else 'gives way'}"

@@ -116,10 +116,12 @@ def must_go_on(decision: Decision, observation: Observation, traffic: Traffic) -
     motion = observation.motion
     if motion is None or not traffic.tracks:
         return False
+    # Not its reach: the robot decides again before it has driven so far.
+    free = max(decision.guard - STOP_SHORT, 0.0) if decision.reach else 0.0
     pair = Candidates(
         headings=np.array([decision.heading, observation.heading]),
         speeds=np.array([motion.max_speed, 0.0]),
-        lengths=np.array([max(decision.guard - STOP_SHORT, 0.0) if decision.reach else 0.0, 0.0]),
+        lengths=np.array([free, 0.0]),
         backward=np.array([decision.backward, False]),
     )
     gaps, _ = predict(observation, motion, pair, traffic, margins=False)
