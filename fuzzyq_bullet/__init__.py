@@ -18,7 +18,6 @@ from fuzzyq_bullet.version import __version__
 if TYPE_CHECKING:
     from fuzzyq_bullet.episode import run
     from fuzzyq_bullet.errors import UserError
-    from fuzzyq_bullet.metrics import Result, result_of
     from fuzzyq_bullet.planning import (
         CommandSettings,
         Decision,
@@ -29,8 +28,9 @@ if TYPE_CHECKING:
         WheelCommand,
         register_planner,
     )
+    from fuzzyq_bullet.record.metrics import Result, result_of
+    from fuzzyq_bullet.record.trajectory import Trajectory
     from fuzzyq_bullet.scenario import Scenario, load_scenario, with_options
-    from fuzzyq_bullet.trajectory import Trajectory
     from fuzzyq_bullet.video.record import frame, record
 
 __all__ = [
@@ -63,15 +63,15 @@ _HOMES = {
     "PlannerSettings": "planning",
     "TwistCommand": "planning",
     "WheelCommand": "planning",
-    "Result": "metrics",
+    "Result": "record.metrics",
     "Scenario": "scenario",
-    "Trajectory": "trajectory",
+    "Trajectory": "record.trajectory",
     "UserError": "errors",
     "frame": "video",
     "load_scenario": "scenario",
     "record": "video",
     "register_planner": "planning",
-    "result_of": "metrics",
+    "result_of": "record.metrics",
     "run": "episode",
     "with_options": "scenario",
 }

@@ -1,7 +1,8 @@
 """Columns: what is recorded of every instant, each declared once with its unit, shape and meaning.
 
 The arrays of a record, the checks of a record's file, its CSV and its documentation follow from the
-declarations: those of a decision in ``planning/decision.py``, those of a tick in ``trajectory.py``.
+declarations: those of a decision in ``planning/decision.py``, those of a tick in
+``record/trajectory.py``.
 """
 
 from __future__ import annotations

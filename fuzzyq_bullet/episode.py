@@ -8,7 +8,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from fuzzyq_bullet.consult import ask, build_planner, closing, refusal
 from fuzzyq_bullet.drives import Driver, KinematicDriver, WheelsDriver
 from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.drives.wheels import DECISIONS_A_SECOND
@@ -25,13 +24,14 @@ from fuzzyq_bullet.planning.commands import (
     equivalent,
     twist_of,
 )
+from fuzzyq_bullet.planning.consult import ask, build_planner, closing, refusal
 from fuzzyq_bullet.planning.controllers import fields_of
 from fuzzyq_bullet.planning.decision import DecisionError, checked
 from fuzzyq_bullet.planning.traffic.guard import Guard
+from fuzzyq_bullet.record.trajectory import Outcome, Trajectory
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.models import Limits, Scenario
-from fuzzyq_bullet.trajectory import Outcome, Trajectory
 
 Progress: TypeAlias = Callable[[float, float], None]
 """Called after every decision with the simulated time (s) and the distance to the goal (m)."""

@@ -16,20 +16,21 @@ import numpy as np
 
 from fuzzyq_bullet.episode import planner_of, run_in, world_of
 from fuzzyq_bullet.geometry import Field, wrap_angle
-from fuzzyq_bullet.moving import Floats, first_poses, poses_between
 from fuzzyq_bullet.physics.camera import Mesh
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.window import Line, Window, WindowClosed
 from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.record.moving import Floats, first_poses, poses_between
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario, check, realise
-from fuzzyq_bullet.trajectory import Trajectory
-from fuzzyq_bullet.video import meshes, style
+from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.captions import outcome_lines
 from fuzzyq_bullet.video.decision_hold import HOLD
 from fuzzyq_bullet.video.explanation import reason
-from fuzzyq_bullet.video.footprints import arrow
+from fuzzyq_bullet.video.map.footprints import arrow
 from fuzzyq_bullet.video.movers import nose_size
-from fuzzyq_bullet.video.solid_movers import body_of, nose_of
+from fuzzyq_bullet.video.scene import meshes
+from fuzzyq_bullet.video.scene.solid_movers import body_of, nose_of
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 """Simulated seconds in a second, to which the keys for slower and faster go."""

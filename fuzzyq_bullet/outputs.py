@@ -12,8 +12,8 @@ from pathlib import Path
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.filming import ANIMATION_SIZE, EXPLAIN, USUAL_SIZE, VIEWS, Filming
 from fuzzyq_bullet.planning.settings import PolicySettings
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario, find_scenario
-from fuzzyq_bullet.trajectory import Trajectory
 
 _ASIDE = {"description", "expect"}
 """What makes a scenario no other run."""

@@ -17,7 +17,7 @@ import pytest
 
 from fuzzyq_bullet.cli import app
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture
-from fuzzyq_bullet.video import scene
+from fuzzyq_bullet.video.scene import scene
 from tests.helpers.commands import FUZZYQ, SHORT, Call, Here, no_workers
 from tests.helpers.forking import Forks
 

@@ -6,16 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fuzzyq_bullet import metrics
 from fuzzyq_bullet.drives.velocity_controller import Twist
 from fuzzyq_bullet.episode import Episode, run, run_in
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth import shortest_path
-from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
+from fuzzyq_bullet.record import metrics
+from fuzzyq_bullet.record.metrics import result_of
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
     Arena,
@@ -31,7 +32,6 @@ from fuzzyq_bullet.scenario import (
     realise,
     with_options,
 )
-from fuzzyq_bullet.trajectory import Trajectory
 
 FAST = ImprovedFuzzySettings(weights=(1.0, 1.0))
 

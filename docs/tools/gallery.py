@@ -18,7 +18,7 @@ from fuzzyq_bullet import Scenario, Trajectory, load_scenario, run
 from fuzzyq_bullet.figures.notebook import ENDS
 from fuzzyq_bullet.figures.topdown import draw_run
 from fuzzyq_bullet.scenario import bundled_scenarios
-from fuzzyq_bullet.video.viewpoint import extent_of
+from fuzzyq_bullet.video.scene.viewpoint import extent_of
 
 DOCS = Path(__file__).resolve().parents[1]
 PAGE = DOCS / "gallery.md"

@@ -29,7 +29,7 @@ def doctor(
         UserError: If a scenario is wrong; nothing is examined then.
     """
     from fuzzyq_bullet.doctor import examine
-    from fuzzyq_bullet.problems import Problem
+    from fuzzyq_bullet.reading.problems import Problem
     from fuzzyq_bullet.scenario import load_scenario
     from fuzzyq_bullet.scenario.files import problem_lines
 

@@ -39,7 +39,7 @@ def rules_given(text: str | None) -> ControllerDefinition:
 def tell_gaps(definition: ControllerDefinition, name: str | None) -> None:
     """Say on stderr where an input belongs to no set."""
     from fuzzyq_bullet.fuzzy.definition_checks import gaps_of
-    from fuzzyq_bullet.problems import key_path
+    from fuzzyq_bullet.reading.problems import key_path
 
     for loc, why in gaps_of(definition):
         say(f"{name}: {key_path(loc)}: {why}", style="bold")

@@ -48,7 +48,7 @@ def validate(
 
 def _look_at(file: str) -> tuple[tuple[str, ...], list[str]]:
     """Return what is wrong with a file, and what is allowed and yet hardly meant."""
-    from fuzzyq_bullet.early_warnings import early_warnings
+    from fuzzyq_bullet.doctor.early_warnings import early_warnings
     from fuzzyq_bullet.scenario import load_scenario, realise
 
     try:
@@ -149,7 +149,7 @@ def schema(
 ) -> None:
     """Print the JSON Schema of scenario files, with what plugins add to them."""
     if process:
-        from fuzzyq_bullet.planning.process_messages import process_schema
+        from fuzzyq_bullet.planning.process.messages import process_schema
 
         typer.echo(dumps(process_schema(), indent=2))
         return

@@ -42,9 +42,9 @@ def watch(
     task = realise(asked)
 
     from fuzzyq_bullet import live
-    from fuzzyq_bullet.metrics import result_of
     from fuzzyq_bullet.physics.engine import silenced
     from fuzzyq_bullet.physics.window import WindowClosed
+    from fuzzyq_bullet.record.metrics import result_of
     from fuzzyq_bullet.scenario.expectations import unmet_expectations
 
     try:

@@ -11,9 +11,9 @@ from fuzzyq_bullet.doctor.finding import Finding
 from fuzzyq_bullet.doctor.luck import examine_luck
 from fuzzyq_bullet.doctor.sight import examine_sight
 from fuzzyq_bullet.doctor.touch import examine_touch
-from fuzzyq_bullet.metrics import has_way
 from fuzzyq_bullet.physics.inspection import Inspection
-from fuzzyq_bullet.problems import Loc
+from fuzzyq_bullet.reading.problems import Loc
+from fuzzyq_bullet.record.metrics import has_way
 from fuzzyq_bullet.scenario import Scenario, realise
 from fuzzyq_bullet.scenario.places import Goal, Start
 

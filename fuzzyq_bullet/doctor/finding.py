@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from fuzzyq_bullet.problems import Loc
+from fuzzyq_bullet.reading.problems import Loc
 
 Kind: TypeAlias = Literal["sight", "turn", "reach", "luck", "limit"]
 

@@ -11,7 +11,7 @@ from fuzzyq_bullet.doctor.finding import Finding
 from fuzzyq_bullet.geometry import Field, Floats
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.inspection import Inspection
-from fuzzyq_bullet.problems import Loc
+from fuzzyq_bullet.reading.problems import Loc
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape

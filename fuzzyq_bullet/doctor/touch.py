@@ -11,7 +11,7 @@ import numpy as np
 from fuzzyq_bullet.doctor.finding import Finding
 from fuzzyq_bullet.geometry import WALL, Field, Floats
 from fuzzyq_bullet.physics.inspection import Inspection
-from fuzzyq_bullet.problems import Loc
+from fuzzyq_bullet.reading.problems import Loc
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.sensors import WIDEST, CorridorSensor
 from fuzzyq_bullet.sensors.base import ExactSensor

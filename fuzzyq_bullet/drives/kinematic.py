@@ -10,9 +10,9 @@ from fuzzyq_bullet.physics.movers import Mover
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.record.trajectory import Collision
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.robot import Robot
-from fuzzyq_bullet.trajectory import Collision
 
 _PARTS = 10
 """How often within a step it is asked whether a moving obstacle touches the disc."""

@@ -36,11 +36,12 @@ from foxglove.messages import (
 from fuzzyq_bullet.geometry import Floats
 from fuzzyq_bullet.physics.camera import Mesh
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT
+from fuzzyq_bullet.record.trajectory import Ticks, Trajectory
 from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.scenario import Scenario
-from fuzzyq_bullet.trajectory import Ticks, Trajectory
-from fuzzyq_bullet.video import meshes, style
-from fuzzyq_bullet.video.footprints import arrow
+from fuzzyq_bullet.video import style
+from fuzzyq_bullet.video.map.footprints import arrow
+from fuzzyq_bullet.video.scene import meshes
 from fuzzyq_bullet.video.timeline import sensed_at
 
 WORLD, ROBOT = "world", "base_link"

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 
 from fuzzyq_bullet.figures.style import GREY, INK
 from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
-from fuzzyq_bullet.trajectory import Trajectory
-from fuzzyq_bullet.video.viewpoint import extent_of
+from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.video.scene.viewpoint import extent_of
 
 ENDS = {
     "goal": "reached the goal",

@@ -19,10 +19,10 @@ from fuzzyq_bullet.figures import MARK, file_name
 from fuzzyq_bullet.figures.style import INK, save_png
 from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
 from fuzzyq_bullet.files import writable_folder
-from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.platforms import data_folder
+from fuzzyq_bullet.record.metrics import result_of
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario, load_scenario, with_options
-from fuzzyq_bullet.trajectory import Trajectory
 
 ENDS = {
     "goal": "goal reached: {time:.1f} s, {way}{shortest}",

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.learning.learners import Floats
-from fuzzyq_bullet.untrusted import read_arrays
+from fuzzyq_bullet.reading.untrusted import read_arrays
 
 Plain: TypeAlias = "str | int | float | bool"
 Curve: TypeAlias = NDArray[np.void]

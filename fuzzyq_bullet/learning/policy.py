@@ -28,7 +28,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.learning.checkpoint import LARGEST
 from fuzzyq_bullet.learning.learners import Floats
-from fuzzyq_bullet.untrusted import read_object, shown
+from fuzzyq_bullet.reading.untrusted import read_object, shown
 
 FORMAT = 1
 MAX_BYTES = 4_000_000

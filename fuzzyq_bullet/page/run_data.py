@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyq_bullet.fuzzy import definition_of
-from fuzzyq_bullet.moving import headings_of
 from fuzzyq_bullet.planning.commands import COMMAND_FIELDS
 from fuzzyq_bullet.planning.controllers import controller_of
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.rules_turn import asked, has_rules
+from fuzzyq_bullet.record.moving import headings_of
+from fuzzyq_bullet.record.rules_turn import asked, has_rules
 from fuzzyq_bullet.video.captions import outcome_lines, planner_name, routine_name
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.explanation import aim_name, off_aim, reason
 from fuzzyq_bullet.video.panels.rules import rule_weights
+from fuzzyq_bullet.video.scene.viewpoint import extent_of
 from fuzzyq_bullet.video.timeline import NO_DECISION, Timeline, sensor_range
-from fuzzyq_bullet.video.viewpoint import extent_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
 
 MOST_TICKS = 6000
 """More are thinned out: at 20 a second those of five minutes are kept."""

@@ -12,7 +12,7 @@ from fuzzyq_bullet.planning.peers.navground import NavgroundPlanner, NavgroundSe
 from fuzzyq_bullet.planning.peers.tangent_bug import TangentBugPlanner, TangentBugSettings
 from fuzzyq_bullet.planning.peers.vfh import VfhPlanner, VfhSettings
 from fuzzyq_bullet.planning.policies import policy_of
-from fuzzyq_bullet.planning.process import ProcessPlanner, ProcessSettings
+from fuzzyq_bullet.planning.process.planner import ProcessPlanner, ProcessSettings
 from fuzzyq_bullet.planning.q_learning import POLICY_SPECS, DirectPlanner
 from fuzzyq_bullet.planning.registry import (
     DEFAULT_PLANNER,

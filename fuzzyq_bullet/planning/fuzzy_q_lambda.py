@@ -25,8 +25,8 @@ from fuzzyq_bullet.learning import Policy, PolicySpec, greedy
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.controllers import controller_shown
 from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.planning.escape.learned_exits import LEARNER, LearnedExits, seconds_of
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
-from fuzzyq_bullet.planning.learned_exits import LEARNER, LearnedExits, seconds_of
 from fuzzyq_bullet.planning.policies import policy_of
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings, PlannerSettings
 from fuzzyq_bullet.wording import shorten

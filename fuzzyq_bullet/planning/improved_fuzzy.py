@@ -7,8 +7,8 @@ import math
 from fuzzyq_bullet.planning.aim import towards_goal
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.decision import Decision, Mode
-from fuzzyq_bullet.planning.escape import Escape
-from fuzzyq_bullet.planning.exploration import ExplorationGraph, Judge, ToGo, knowing
+from fuzzyq_bullet.planning.escape.escape import Escape
+from fuzzyq_bullet.planning.escape.exploration import ExplorationGraph, Judge, ToGo, knowing
 from fuzzyq_bullet.planning.fuzzy import Routine, Situation
 from fuzzyq_bullet.planning.safety_filter import safety_filter
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings, RecoverySettings

@@ -19,7 +19,7 @@ from fuzzyq_bullet.learning import Policy, PolicySpec, greedy
 from fuzzyq_bullet.planning.aim import Aim, towards_goal
 from fuzzyq_bullet.planning.base import STEP_UNIT, Observation
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.planning.escape import Escape
+from fuzzyq_bullet.planning.escape.escape import Escape
 from fuzzyq_bullet.planning.settings import DirectSettings
 from fuzzyq_bullet.planning.traffic.guard import Guard
 

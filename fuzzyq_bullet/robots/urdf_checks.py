@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzyq_bullet.reading.xml_tree import Element
 from fuzzyq_bullet.robots.base import RobotModel
 from fuzzyq_bullet.robots.urdf_file import Reader, read_urdf
 from fuzzyq_bullet.robots.urdf_parts import Link, moved, read_link, transform
-from fuzzyq_bullet.xml_tree import Element
 
 _NEAR = 0.002
 """How exactly wheels must lie opposite each other, and on the ground (m)."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
-from fuzzyq_bullet.xml_tree import Element, parse_xml
+from fuzzyq_bullet.reading.xml_tree import Element, parse_xml
 
 MAX_BYTES = 1_000_000
 _MAX_LINE = 8_000

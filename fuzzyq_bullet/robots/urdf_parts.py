@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
+from fuzzyq_bullet.reading.xml_tree import Element
 from fuzzyq_bullet.robots.urdf_file import Reader
-from fuzzyq_bullet.xml_tree import Element
 
 _MAX_MESH = 20_000_000
 _SIDES = 32

@@ -14,8 +14,8 @@ import numpy as np
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE
-from fuzzyq_bullet.problems import MAX_SHOWN, Loc, key_path
 from fuzzyq_bullet.quantities import TOUCH
+from fuzzyq_bullet.reading.problems import MAX_SHOWN, Loc, key_path
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.motion_checks import motion_conflicts

@@ -14,7 +14,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_text, written_beside
 from fuzzyq_bullet.planning.controllers import rules_named
 from fuzzyq_bullet.planning.fuzzy_q_lambda import field_policy
-from fuzzyq_bullet.planning.process import ProcessSettings
+from fuzzyq_bullet.planning.process.planner import ProcessSettings
 from fuzzyq_bullet.planning.registry import (
     DEFAULT_PLANNER,
     make_planner,
@@ -22,8 +22,9 @@ from fuzzyq_bullet.planning.registry import (
     settings_for,
 )
 from fuzzyq_bullet.planning.settings import PolicySettings, RoutineSettings
-from fuzzyq_bullet.problems import Problem, lines_of
 from fuzzyq_bullet.quantities import MAX_OBSTACLES
+from fuzzyq_bullet.reading.problems import Problem, lines_of
+from fuzzyq_bullet.reading.yaml_tree import Node, read_tree
 from fuzzyq_bullet.scenario.checks import find_conflicts
 from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.layouts import realise
@@ -39,7 +40,6 @@ from fuzzyq_bullet.scenario.sources import (
 )
 from fuzzyq_bullet.shapes.trace import with_trace_in
 from fuzzyq_bullet.wording import error_in_words, shorten
-from fuzzyq_bullet.yaml_tree import Node, read_tree
 
 MAX_BYTES = 2_000_000
 """Largest scenario file: 10 000 boxes, one a line, take about 0.8 MB."""

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.geometry import Field, Floats
-from fuzzyq_bullet.problems import Loc
 from fuzzyq_bullet.quantities import TOUCH
+from fuzzyq_bullet.reading.problems import Loc
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.movers import courses_of

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning.registry import no_planner, planner_names, settings_for
 from fuzzyq_bullet.planning.settings import PlannerSettings
-from fuzzyq_bullet.problems import key_path
+from fuzzyq_bullet.reading.problems import key_path
 from fuzzyq_bullet.scenario.models import Drive, Scenario
 from fuzzyq_bullet.scenario.places import Arena, Goal, Start
 from fuzzyq_bullet.wording import not_one_of, shorten

@@ -11,7 +11,8 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from fuzzyq_bullet.planning.registry import DEFAULT_PLANNER, no_planner, planner_names, settings_for
-from fuzzyq_bullet.problems import (
+from fuzzyq_bullet.quantities import ANGLE_KEYS
+from fuzzyq_bullet.reading.problems import (
     MAX_SHOWN,
     Loc,
     Problem,
@@ -20,7 +21,6 @@ from fuzzyq_bullet.problems import (
     problem_of,
     refusal,
 )
-from fuzzyq_bullet.quantities import ANGLE_KEYS
 from fuzzyq_bullet.robots import no_robot
 from fuzzyq_bullet.scenario.expectations import expect_model
 from fuzzyq_bullet.scenario.layouts import LAYOUTS

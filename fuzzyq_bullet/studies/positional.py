@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from fuzzyq_bullet.episode import run, run_with
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.studies.episodes import Job
 from fuzzyq_bullet.studies.options import POSITIONAL
 from fuzzyq_bullet.studies.sweep import answer, run_job
 from fuzzyq_bullet.training.position import learn_position
-from fuzzyq_bullet.trajectory import Trajectory
 
 
 def learn_and_drive(scenario: Scenario) -> Trajectory:

@@ -34,8 +34,7 @@ from fuzzyq_bullet.learning.learners import Floats
 from fuzzyq_bullet.learning.schedules import Schedule
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
-from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner, rule_policy
-from fuzzyq_bullet.planning.learned_exits import (
+from fuzzyq_bullet.planning.escape.learned_exits import (
     LEARNER,
     SECONDS,
     Choice,
@@ -44,10 +43,11 @@ from fuzzyq_bullet.planning.learned_exits import (
     names_of,
     rows_of,
 )
+from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner, rule_policy
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario.fields import field_digest
 from fuzzyq_bullet.scenario.models import Scenario
-from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.version import __version__
 
 RUNS = 50

@@ -14,9 +14,9 @@ from typing import Any
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
 from fuzzyq_bullet.learning import Schedule, Setup
+from fuzzyq_bullet.reading.yaml_tree import read_tree
 from fuzzyq_bullet.training.rewards import RewardSettings
 from fuzzyq_bullet.wording import did_you_mean, shorten
-from fuzzyq_bullet.yaml_tree import read_tree
 
 MAX_BYTES = 100_000
 """Largest options file."""

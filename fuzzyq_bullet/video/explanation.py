@@ -9,13 +9,13 @@ import math
 from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.rules_turn import asked, controller_turns
+from fuzzyq_bullet.record.rules_turn import asked, controller_turns
 from fuzzyq_bullet.video.approach import approaching
 from fuzzyq_bullet.video.timeline import NO_DECISION, sensor_range
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.quantities import Point
-from fuzzyq_bullet.trajectory import Decisions, Trajectory
+from fuzzyq_bullet.record.trajectory import Decisions, Trajectory
 
 STRAIGHT = math.radians(5.0)
 """A heading no farther off the aim is called straight to it (rad)."""

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fuzzyq_bullet.moving import headings_of, poses_at
+from fuzzyq_bullet.record.moving import headings_of, poses_at
 from fuzzyq_bullet.shapes.motion import placed
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.footprints import Floats, arrow
+from fuzzyq_bullet.video.map.footprints import Floats, arrow
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from PIL import Image, ImageDraw
 
+    from fuzzyq_bullet.record.trajectory import Trajectory
     from fuzzyq_bullet.shapes import Shape
-    from fuzzyq_bullet.trajectory import Trajectory
 
 _NOSE = 1.1
 """Size of the arrow, in the radius of the largest circle about the centre that it should fill."""

@@ -12,13 +12,13 @@ from PIL import Image
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.filming import VIEWS
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.cameras import Camera, FixedCamera, FollowCamera
 from fuzzyq_bullet.video.captions import SHORT_OUTCOMES, Story, planner_name
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.layout import Layout, usual_size
 from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.video.race_map import COLOURS, RaceMap
-from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.scene.cameras import Camera, FixedCamera, FollowCamera
+from fuzzyq_bullet.video.scene.scene import Scene
 from fuzzyq_bullet.video.style import Rect
 from fuzzyq_bullet.video.timeline import Moment, Timeline
 from fuzzyq_bullet.video.views.base import Sensing, known
@@ -26,7 +26,7 @@ from fuzzyq_bullet.video.views.base import Sensing, known
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
 
 _TITLE = 34
 """Height of the line above a scene (points)."""

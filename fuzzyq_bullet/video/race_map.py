@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.legend import note
+from fuzzyq_bullet.video.map.legend import note
+from fuzzyq_bullet.video.map.plan import Plan
 from fuzzyq_bullet.video.marks import cross
 from fuzzyq_bullet.video.movers import Drawn, DrawnMovers, draw_mover
 from fuzzyq_bullet.video.paint import DirtyRegion
-from fuzzyq_bullet.video.plan import Plan
+from fuzzyq_bullet.video.scene.viewpoint import extent_of
 from fuzzyq_bullet.video.timeline import Steady
-from fuzzyq_bullet.video.viewpoint import extent_of
 
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.video.map.footprints import Floats
     from fuzzyq_bullet.video.style import Rect
     from fuzzyq_bullet.video.timeline import Moment
 

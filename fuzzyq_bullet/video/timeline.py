@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.video.footprints import Floats, corridor
+from fuzzyq_bullet.video.map.footprints import Floats, corridor
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
 
 NO_DECISION = -1
 

@@ -47,7 +47,7 @@ def test_a_name_that_is_not_there_is_a_mistake(tmp_path: Path) -> None:
 
 def test_a_link_to_code_has_the_lines_of_today(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
-    page.write_text("See [`planning.escape.Escape.aim`](../../old.py#L1-L2).")
+    page.write_text("See [`planning.escape.escape.Escape.aim`](../../old.py#L1-L2).")
     path, _, lines = links.renewed(page).partition("(")[2].rstrip(").").partition("#")
     first, last = (int(number) for number in re.findall(r"\d+", lines))
     told = (tmp_path / path).read_text(encoding="utf-8").splitlines()[first - 1 : last]

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet import UserError, load_scenario, register_planner
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.robots import register_robot
 from fuzzyq_bullet.scenario import register_expectation
 from fuzzyq_bullet.scenario.importers import register_importer
@@ -18,7 +19,6 @@ from fuzzyq_bullet.scenario.layouts import register_layout
 from fuzzyq_bullet.sensors import register_sensor
 from fuzzyq_bullet.shapes import register_motion, register_shape
 from fuzzyq_bullet.studies import register_study
-from fuzzyq_bullet.trajectory import Trajectory
 from fuzzyq_bullet.video import register_panel
 from tests.helpers.commands import Call
 

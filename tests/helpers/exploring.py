@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import Observation, RangeSensor
-from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
+from fuzzyq_bullet.planning.escape.cost_to_go import ObstacleMap
 
 RANGE, BODY, WIDE = 1.0, 0.2, 0.22
 """How far the robot sees, its radius and half the width of a detection line (m)."""

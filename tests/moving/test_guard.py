@@ -22,13 +22,13 @@ from fuzzyq_bullet import (
     run,
 )
 from fuzzyq_bullet.episode import Episode, run_with, world_of
-from fuzzyq_bullet.fault import at_fault
 from fuzzyq_bullet.planning import QLambdaSettings, settings_for
 from fuzzyq_bullet.planning.base import RangeSensor
 from fuzzyq_bullet.planning.traffic.guard import Guard
 from fuzzyq_bullet.planning.traffic.tracker import Traffic
 from fuzzyq_bullet.planning.traffic.twist_safety import rollout_twists, safe_twists
 from fuzzyq_bullet.planning.twist_filter import twist_filter
+from fuzzyq_bullet.record.fault import at_fault
 from fuzzyq_bullet.scenario import Limits, random_task, realise
 from fuzzyq_bullet.scenario.layouts import Wanderers
 from tests.helpers.commands import Call

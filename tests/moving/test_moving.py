@@ -11,14 +11,14 @@ import pytest
 from fuzzyq_bullet.episode import Episode, run, world_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.metrics import collision_text, result_of
 from fuzzyq_bullet.planning import Decision
+from fuzzyq_bullet.record.metrics import collision_text, result_of
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from fuzzyq_bullet.scenario.files import dump_scenario, load_scenario, parse_scenario
 from fuzzyq_bullet.scenario.movers import courses_of
 from fuzzyq_bullet.shapes.motion import seen_from
-from fuzzyq_bullet.trajectory import Trajectory
 
 ROOM = """\
 name: moving

@@ -13,13 +13,13 @@ from PIL import Image
 
 from fuzzyq_bullet.doctor import examine
 from fuzzyq_bullet.episode import run
-from fuzzyq_bullet.metrics import has_way
-from fuzzyq_bullet.moving import headings_of, movers_csv, poses_at
 from fuzzyq_bullet.page.run_data import run_data
-from fuzzyq_bullet.trajectory import Trajectory
+from fuzzyq_bullet.record.metrics import has_way
+from fuzzyq_bullet.record.moving import headings_of, movers_csv, poses_at
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.explanation import reason
-from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.map.map import Map
 from fuzzyq_bullet.video.movers import DrawnMovers
 from fuzzyq_bullet.video.race_map import COLOURS, RaceMap
 from fuzzyq_bullet.video.timeline import Timeline, sensed_at

@@ -8,12 +8,12 @@ import pytest
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
 from fuzzyq_bullet.planning.aim import along_heading, towards_goal
-from fuzzyq_bullet.planning.escape import Escape
-from fuzzyq_bullet.planning.exploration import ExplorationGraph
-from fuzzyq_bullet.planning.frontiers import Frontier
+from fuzzyq_bullet.planning.escape.escape import Escape
+from fuzzyq_bullet.planning.escape.exploration import ExplorationGraph
+from fuzzyq_bullet.planning.escape.frontiers import Frontier
+from fuzzyq_bullet.planning.escape.path_follower import PathFollower, Segment
 from fuzzyq_bullet.planning.fuzzy import Routine
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyPlanner
-from fuzzyq_bullet.planning.path_follower import PathFollower, Segment
 from fuzzyq_bullet.planning.scan import scan_360
 from tests.helpers.exploring import observe
 
@@ -99,7 +99,7 @@ def test_it_looks_around_again_on_its_way_to_a_frontier(far, scans, monkeypatch)
         looks.append(observation.position)
         return scan_360(observation)
 
-    monkeypatch.setattr("fuzzyq_bullet.planning.exploration.scan_360", counted)
+    monkeypatch.setattr("fuzzyq_bullet.planning.escape.exploration.scan_360", counted)
     escape = Escape()
     first = escape.aim(observe(WALL, HERE, goal=(5.0, 0.0)), 4.0)
     there = (far * math.cos(first.bearing), far * math.sin(first.bearing))

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csgraph
 
 from fuzzyq_bullet.occupancy import OccupancyGrid
-from fuzzyq_bullet.planning.cost_to_go import CELL, MOST, TIGHT, ObstacleMap
+from fuzzyq_bullet.planning.escape.cost_to_go import CELL, MOST, TIGHT, ObstacleMap
 from tests.helpers.exploring import map_of
 
 WALL = np.array([[[1.0, -1.0], [1.0, 1.0]]])

@@ -10,10 +10,10 @@ from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import MODES, ImprovedFuzzySettings
 from fuzzyq_bullet.planning.base import STEP_UNIT
-from fuzzyq_bullet.planning.escape import GAIN, PATIENCE, Escape
-from fuzzyq_bullet.planning.exploration import NEAR
-from fuzzyq_bullet.planning.path_follower import PATIENCE as FOLLOWER_PATIENCE
-from fuzzyq_bullet.planning.path_follower import PathFollower, Segment
+from fuzzyq_bullet.planning.escape.escape import GAIN, PATIENCE, Escape
+from fuzzyq_bullet.planning.escape.exploration import NEAR
+from fuzzyq_bullet.planning.escape.path_follower import PATIENCE as FOLLOWER_PATIENCE
+from fuzzyq_bullet.planning.escape.path_follower import PathFollower, Segment
 from fuzzyq_bullet.planning.ray_search import ray_search
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder, Goal, Limits, Scenario, Start
 from tests.helpers.exploring import RANGE, WIDE, observe

@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field, wrap_angle
 from fuzzyq_bullet.ground_truth import feasible
-from fuzzyq_bullet.planning.exploration import (
+from fuzzyq_bullet.planning.escape.exploration import (
     NEAR,
     ExplorationGraph,
     Node,
     costs_to_go,
     shortest_paths,
 )
-from fuzzyq_bullet.planning.frontiers import Frontier, find_frontiers
+from fuzzyq_bullet.planning.escape.frontiers import Frontier, find_frontiers
 from fuzzyq_bullet.planning.scan import scan_360
 from fuzzyq_bullet.scenario import Scenario
 from tests.helpers.exploring import BODY, HIDDEN, RANGE, WIDE, free, map_of, observe, standing

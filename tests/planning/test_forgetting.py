@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning.exploration import ExplorationGraph
+from fuzzyq_bullet.planning.escape.exploration import ExplorationGraph
 from fuzzyq_bullet.shapes import Box
 from tests.helpers.exploring import observe
 

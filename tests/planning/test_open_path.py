@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.planning.cost_to_go import CELL, ObstacleMap
-from fuzzyq_bullet.planning.escape import Escape
-from fuzzyq_bullet.planning.open_path import open_path
+from fuzzyq_bullet.planning.escape.cost_to_go import CELL, ObstacleMap
+from fuzzyq_bullet.planning.escape.escape import Escape
+from fuzzyq_bullet.planning.escape.open_path import open_path
 from tests.helpers.exploring import WIDE, observe
 
 START, GOAL = (0.05, 0.05), (4.05, 0.05)

@@ -10,7 +10,7 @@ import pytest
 
 from fuzzyq_bullet.geometry import Field, wrap_angle
 from fuzzyq_bullet.planning import Motion, Observation, RangeSensor
-from fuzzyq_bullet.planning.path_follower import CREEP, LEAST, PATIENCE, PathFollower
+from fuzzyq_bullet.planning.escape.path_follower import CREEP, LEAST, PATIENCE, PathFollower
 
 MOTION = Motion(
     max_speed=0.6,

@@ -18,6 +18,7 @@ from pydantic import Field
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.planning import PlannerSettings, ProcessSettings, planner_names, settings_for
 from fuzzyq_bullet.platforms import data_folder
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Drive, Limits, Scenario, load_scenario
 from fuzzyq_bullet.studies import (
     Environment,
@@ -32,7 +33,6 @@ from fuzzyq_bullet.studies.episodes import Job
 from fuzzyq_bullet.studies.plan import Episode, PlannerDescription, Seed
 from fuzzyq_bullet.studies.study import Work
 from fuzzyq_bullet.studies.sweep import Done, answer, run_job
-from fuzzyq_bullet.trajectory import Trajectory
 
 ROOT = Path(__file__).resolve().parents[2]
 LIMITS = Limits(time=40.0, steps=20_000)

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.studies.episodes import Job, Row, as_csv
 from fuzzyq_bullet.studies.storage import rows_in
 from fuzzyq_bullet.studies.sweep import run_job
-from fuzzyq_bullet.trajectory import Trajectory
 from tests.soak.disturbed import Ledger, quiet_samples
 from tests.soak.soak_study import Soak
 from tests.soak.watched import marked

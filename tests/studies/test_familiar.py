@@ -11,7 +11,7 @@ import pytest
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import settings_for
-from fuzzyq_bullet.planning.exploration import WaysOut
+from fuzzyq_bullet.planning.escape.exploration import WaysOut
 from fuzzyq_bullet.scenario import realise
 from fuzzyq_bullet.studies.episodes import Environment, Job, Row
 from fuzzyq_bullet.studies.familiar.drivers import keep_map_and_drive, learn_and_drive, work

@@ -16,8 +16,8 @@ from fuzzyq_bullet.cli import app
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.learning import load_policy
 from fuzzyq_bullet.learning.checkpoint import Checkpoint
-from fuzzyq_bullet.planning.exploration import WaysOut
-from fuzzyq_bullet.planning.learned_exits import (
+from fuzzyq_bullet.planning.escape.exploration import WaysOut
+from fuzzyq_bullet.planning.escape.learned_exits import (
     Choice,
     LearnedExits,
     names_of,

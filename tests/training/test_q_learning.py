@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 from fuzzyq_bullet.episode import STUCK_TIME, run, run_in
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy, Schedule, load_policy
-from fuzzyq_bullet.metrics import result_of
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import QLambdaSettings, QLearningSettings, make_planner, planner_names
 from fuzzyq_bullet.planning.base import STEP_UNIT, Observation, RangeSensor
@@ -32,6 +31,7 @@ from fuzzyq_bullet.planning.q_learning import (
     sense,
     state_of,
 )
+from fuzzyq_bullet.record.metrics import result_of
 from fuzzyq_bullet.scenario import Scenario, load_scenario, parse_scenario
 from fuzzyq_bullet.training.problems import PATIENCE, DirectProblem, TrainingEpisode
 from fuzzyq_bullet.training.registry import learn, recipe_of

@@ -14,8 +14,8 @@ import pytest
 from fuzzyq_bullet import episode
 from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.decision import MODES
+from fuzzyq_bullet.record.trajectory import Collision
 from fuzzyq_bullet.scenario import Goal, load_scenario
-from fuzzyq_bullet.trajectory import Collision
 from fuzzyq_bullet.video.captions import Story
 from fuzzyq_bullet.video.compositor import Compositor
 from fuzzyq_bullet.video.decision_hold import HOLD, DecisionHold
@@ -30,18 +30,18 @@ from fuzzyq_bullet.video.explanation import (
     side_of,
     struck,
 )
-from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.map.map import Map
 from fuzzyq_bullet.video.panels.action import Action
 from fuzzyq_bullet.video.panels.fuzzification import Fuzzification
 from fuzzyq_bullet.video.panels.rules import Rules
 from fuzzyq_bullet.video.panels.sensors import Sensors
 from fuzzyq_bullet.video.record import moments
-from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.scene.scene import Scene
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Timeline
 from tests.helpers.synthetic import drive, modes, scenario
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
 
 
 def told(facing: float = 0.0, *, heading: float = 0.0, mode: int = 0, **columns: Any) -> Trajectory:

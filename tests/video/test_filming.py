@@ -18,10 +18,10 @@ from fuzzyq_bullet.filming import Filming, size_of
 from fuzzyq_bullet.outputs import film_name, films_of
 from fuzzyq_bullet.scenario import Cylinder
 from fuzzyq_bullet.video import Canvas, View, frame, record, register_view, style
-from fuzzyq_bullet.video.cameras import FixedCamera, FollowCamera
 from fuzzyq_bullet.video.compositor import Compositor
 from fuzzyq_bullet.video.layout import Layout
 from fuzzyq_bullet.video.race_map import COLOURS
+from fuzzyq_bullet.video.scene.cameras import FixedCamera, FollowCamera
 from fuzzyq_bullet.video.style import Rect
 from fuzzyq_bullet.video.timeline import Timeline
 from tests.helpers.synthetic import drive, scenario
@@ -29,7 +29,7 @@ from tests.helpers.synthetic import drive, scenario
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
 
 pytestmark = pytest.mark.usefixtures("still_once")
 SMALL = (320, 240)

@@ -11,25 +11,25 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from fuzzyq_bullet.record.trajectory import Collision, Decisions, Ticks
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder
 from fuzzyq_bullet.scenario.places import Via
-from fuzzyq_bullet.trajectory import Collision, Decisions, Ticks
 from fuzzyq_bullet.video import frame, paint, style
-from fuzzyq_bullet.video.avoidance import Avoidance
 from fuzzyq_bullet.video.captions import outcome_lines
 from fuzzyq_bullet.video.compositor import Compositor
 from fuzzyq_bullet.video.decision_hold import DecisionHold
-from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.map.avoidance import Avoidance
+from fuzzyq_bullet.video.map.map import Map
 from fuzzyq_bullet.video.panels import Canvas
 from fuzzyq_bullet.video.panels.rules import Rules
 from fuzzyq_bullet.video.record import moments
-from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.scene.scene import Scene
 from fuzzyq_bullet.video.style import FUZZIFICATION, MAP, RULES, SCENE, SENSORS, Rect
 from fuzzyq_bullet.video.timeline import Timeline, sensed_at
 from tests.helpers.synthetic import drive, modes, scenario
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
 
 

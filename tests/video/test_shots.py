@@ -12,15 +12,15 @@ from PIL import Image
 from fuzzyq_bullet.physics.obstacle_urdf import WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import frame, style
 from fuzzyq_bullet.video.compositor import Compositor
-from fuzzyq_bullet.video.scene import Scene
-from fuzzyq_bullet.video.shots import SPAN, Shots
+from fuzzyq_bullet.video.scene.scene import Scene
+from fuzzyq_bullet.video.scene.shots import SPAN, Shots
+from fuzzyq_bullet.video.scene.viewpoint import lens_for
 from fuzzyq_bullet.video.style import SCENE
 from fuzzyq_bullet.video.timeline import Timeline
-from fuzzyq_bullet.video.viewpoint import lens_for
 from tests.helpers.synthetic import drive, scenario
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
 
 
 @pytest.fixture(scope="module")

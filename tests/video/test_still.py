@@ -7,8 +7,8 @@ import pytest
 
 from fuzzyq_bullet.physics.camera import NOTHING, Lens, Mesh, add_mesh, shoot
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.video.meshes import prisms
-from fuzzyq_bullet.video.still import photograph
+from fuzzyq_bullet.video.scene.meshes import prisms
+from fuzzyq_bullet.video.scene.still import photograph
 
 _LENS = Lens(
     eye=(0.3, -6.0, 6.0),

@@ -15,16 +15,17 @@ from PIL import Image
 import fuzzyq_bullet
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.video import encoders as encoder_module
-from fuzzyq_bullet.video import frame, record, scene, style
+from fuzzyq_bullet.video import frame, record, style
 from fuzzyq_bullet.video.encoders import Encoder, FrameBuffer
 from fuzzyq_bullet.video.paint import DirtyRegion
-from fuzzyq_bullet.video.still import photograph
+from fuzzyq_bullet.video.scene import scene
+from fuzzyq_bullet.video.scene.still import photograph
 from tests.helpers.synthetic import drive, scenario, standing
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
 
 
 pytestmark = pytest.mark.usefixtures("still_once")

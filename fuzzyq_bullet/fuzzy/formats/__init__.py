@@ -16,9 +16,9 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_text, written_beside
 from fuzzyq_bullet.fuzzy.definition import ControllerDefinition
 from fuzzyq_bullet.fuzzy.formats import fis, fll, yaml_format
-from fuzzyq_bullet.problems import Problem, keys_at, lines_of, problem_of
+from fuzzyq_bullet.reading.problems import Problem, keys_at, lines_of, problem_of
+from fuzzyq_bullet.reading.yaml_tree import Node
 from fuzzyq_bullet.wording import shorten
-from fuzzyq_bullet.yaml_tree import Node
 
 MAX_BYTES = 200_000
 """Largest file of a controller: one of 15 × 15 rules takes about 10 kB."""

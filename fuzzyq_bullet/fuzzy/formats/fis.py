@@ -24,8 +24,8 @@ from fuzzyq_bullet.fuzzy.formats.lines import (
     terms,
     value,
 )
+from fuzzyq_bullet.reading.yaml_tree import Node
 from fuzzyq_bullet.wording import not_one_of, shorten
-from fuzzyq_bullet.yaml_tree import Node
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.definition import ControllerDefinition, VariableDefinition

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.fuzzy.definition import NAMES
+from fuzzyq_bullet.reading.yaml_tree import Node
 from fuzzyq_bullet.wording import not_one_of, shorten
-from fuzzyq_bullet.yaml_tree import Node
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.definition import VariableDefinition

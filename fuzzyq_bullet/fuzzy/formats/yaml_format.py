@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from fuzzyq_bullet.yaml_tree import Node, read_tree
+from fuzzyq_bullet.reading.yaml_tree import Node, read_tree
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.definition import ControllerDefinition, SetDefinition

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from fuzzyq_bullet.planning.aim import Aim
 from fuzzyq_bullet.planning.base import Floats, Observation
-from fuzzyq_bullet.planning.cost_to_go import NO_HITS
 from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.planning.escape.cost_to_go import NO_HITS
 from fuzzyq_bullet.planning.traffic.give_way import GiveWay, must_go_on
 from fuzzyq_bullet.planning.traffic.passive_safety import PassiveSafety
 from fuzzyq_bullet.planning.traffic.tracker import Tracker, Traffic

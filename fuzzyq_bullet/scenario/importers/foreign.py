@@ -9,9 +9,9 @@ from typing import Any, Literal, TypeAlias, cast, get_args
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.quantities import MAX_OBSTACLES, MIN_RADIUS
+from fuzzyq_bullet.reading.untrusted import number as number_of
 from fuzzyq_bullet.robots import FUZZYQ, RobotModel, no_robot, robot_model, robot_names
 from fuzzyq_bullet.scenario.places import Bounds
-from fuzzyq_bullet.untrusted import number as number_of
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 Unknown: TypeAlias = Literal["blocked", "free"]

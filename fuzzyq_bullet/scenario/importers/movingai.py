@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_text
+from fuzzyq_bullet.reading.untrusted import number
 from fuzzyq_bullet.scenario.importers.cells import grid_map
 from fuzzyq_bullet.scenario.importers.foreign import (
     ForeignMap,
@@ -21,7 +22,6 @@ from fuzzyq_bullet.scenario.importers.foreign import (
 )
 from fuzzyq_bullet.scenario.importers.images import cell_size
 from fuzzyq_bullet.scenario.importers.registry import register_importer
-from fuzzyq_bullet.untrusted import number
 from fuzzyq_bullet.wording import shorten
 
 Letters: TypeAlias = NDArray[np.uint8]

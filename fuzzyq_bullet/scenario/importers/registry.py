@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeAlias
 from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.problems import key_path
+from fuzzyq_bullet.reading.problems import key_path
 from fuzzyq_bullet.scenario.checks import check
 from fuzzyq_bullet.scenario.importers.building import asked_for, scenario_of
 from fuzzyq_bullet.scenario.importers.foreign import ForeignMap, ImportOptions

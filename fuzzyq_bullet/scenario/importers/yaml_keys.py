@@ -9,8 +9,8 @@ from typing import Any
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_text
+from fuzzyq_bullet.reading.yaml_tree import Key, Node, read_tree
 from fuzzyq_bullet.wording import not_one_of, shorten
-from fuzzyq_bullet.yaml_tree import Key, Node, read_tree
 
 _MAX_BYTES = 2_000_000
 

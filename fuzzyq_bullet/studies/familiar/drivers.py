@@ -16,13 +16,13 @@ from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.studies.episodes import Job
 from fuzzyq_bullet.studies.escape.bounds import DRIVERS
 from fuzzyq_bullet.studies.familiar.kept_map import KeptMap
 from fuzzyq_bullet.studies.sweep import ROOM, answer, run_job
 from fuzzyq_bullet.training.field import FieldMemory, FieldTask, field_setup
-from fuzzyq_bullet.trajectory import Trajectory
 
 LEARNED, KEPT = "learned", "kept-map"
 _LABEL = re.compile(rf"({LEARNED}|{KEPT})-(\d+)")

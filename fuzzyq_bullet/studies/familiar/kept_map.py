@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from fuzzyq_bullet.planning.exploration import ENCLOSED, NEAR, ExplorationGraph, WaysOut
+from fuzzyq_bullet.planning.escape.exploration import ENCLOSED, NEAR, ExplorationGraph, WaysOut
 from fuzzyq_bullet.planning.scan import Point
 
 PRICE = 2.0

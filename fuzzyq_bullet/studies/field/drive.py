@@ -11,14 +11,14 @@ import numpy as np
 
 from fuzzyq_bullet.episode import planner_of, run_with
 from fuzzyq_bullet.planning import Observation, Planner
-from fuzzyq_bullet.planning.process import ProcessSettings
+from fuzzyq_bullet.planning.process.planner import ProcessSettings
+from fuzzyq_bullet.record.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.sensors import ExactSensor
 from fuzzyq_bullet.studies.episodes import Job
 from fuzzyq_bullet.studies.escape.bounds import drive_shortest_path
 from fuzzyq_bullet.studies.field.plan import BOUND
 from fuzzyq_bullet.studies.sweep import Done, answer, run_job
-from fuzzyq_bullet.trajectory import Trajectory
 
 
 class Timed:

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.reading.untrusted import number
 from fuzzyq_bullet.scenario import Goal, Scenario
 from fuzzyq_bullet.scenario.importers import ImportOptions, import_map, importable, options_of
 from fuzzyq_bullet.studies.field.plan import BOUND, World
 from fuzzyq_bullet.studies.options import outfit_with
-from fuzzyq_bullet.untrusted import number
 
 _PICTURES = (".png", ".pgm", ".bmp")
 """Pictures belong to ROS maps; a picture alone has no size."""

@@ -11,11 +11,11 @@ from unittest import mock
 
 import numpy as np
 
-from fuzzyq_bullet.consult import build_planner
 from fuzzyq_bullet.episode import Episode
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision
+from fuzzyq_bullet.planning.consult import build_planner
 from fuzzyq_bullet.scenario import (
     Arena,
     Goal,

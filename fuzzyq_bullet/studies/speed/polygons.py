@@ -8,9 +8,9 @@ from statistics import median
 
 import numpy as np
 
-from fuzzyq_bullet.consult import build_planner
 from fuzzyq_bullet.episode import Episode, world_of
-from fuzzyq_bullet.metrics import has_way
+from fuzzyq_bullet.planning.consult import build_planner
+from fuzzyq_bullet.record.metrics import has_way
 from fuzzyq_bullet.scenario import Arena, Goal, Limits, Scenario, Start
 from fuzzyq_bullet.scenario.files import dump_scenario, parse_scenario
 from fuzzyq_bullet.studies.speed import Row, interleaved

@@ -25,8 +25,8 @@ from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.sets import Variable
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.video.map.footprints import Floats
 
 _LEFT, _TOP = 86, 48
 _WORDS = _LEFT - 12

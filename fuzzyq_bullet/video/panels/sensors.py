@@ -11,16 +11,16 @@ from PIL import Image, ImageDraw
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.asked import metres
 from fuzzyq_bullet.video.explanation import aim_name, is_clear
-from fuzzyq_bullet.video.footprints import Floats, arrow, circle, clipped, corners_for, corridor
-from fuzzyq_bullet.video.meshes import walls_of
+from fuzzyq_bullet.video.map.footprints import Floats, arrow, circle, clipped, corners_for, corridor
 from fuzzyq_bullet.video.movers import DrawnMovers
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
+from fuzzyq_bullet.video.scene.meshes import walls_of
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Sensed, sensed_at, sensor_range
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
 
 _LENS: paint.Box = (8, 28, 182, 202)
 _DIAMETER = _LENS[2] - _LENS[0]

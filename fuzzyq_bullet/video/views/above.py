@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.map.map import Map
 from fuzzyq_bullet.video.views.base import Picture, register_view
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
     from fuzzyq_bullet.video.timeline import Moment
     from fuzzyq_bullet.video.views.base import Stage

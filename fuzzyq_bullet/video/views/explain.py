@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.video.captions import Clock, Story, caption, outcome_card
 from fuzzyq_bullet.video.layout import Layout
-from fuzzyq_bullet.video.map import Map
+from fuzzyq_bullet.video.map.map import Map
 from fuzzyq_bullet.video.panels import Panels, added_panels
-from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.scene.scene import Scene
 from fuzzyq_bullet.video.views.base import Sensing, Stage, View, known, register_view
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
     from fuzzyq_bullet.video.timeline import Moment
 

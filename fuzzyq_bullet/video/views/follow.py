@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fuzzyq_bullet.video.cameras import FollowCamera
+from fuzzyq_bullet.video.scene.cameras import FollowCamera
 from fuzzyq_bullet.video.views.base import register_view
 from fuzzyq_bullet.video.views.scene import SceneView
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.video.scene import Scene
+from fuzzyq_bullet.video.scene.scene import Scene
 from fuzzyq_bullet.video.views.base import Picture, register_view
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.cameras import Camera
+    from fuzzyq_bullet.record.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
+    from fuzzyq_bullet.video.scene.cameras import Camera
     from fuzzyq_bullet.video.timeline import Moment
     from fuzzyq_bullet.video.views.base import Stage
 

@@ -13,9 +13,9 @@ from scipy.sparse.csgraph import connected_components
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
+from fuzzyq_bullet.reading.xml_tree import read_xml
 from fuzzyq_bullet.scenario.importers.gazebo.solids import Floats
 from fuzzyq_bullet.wording import shorten
-from fuzzyq_bullet.xml_tree import read_xml
 
 _MAX_BYTES = 50_000_000
 _MAX_FACES = 1_000_000

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.reading.xml_tree import Element
 from fuzzyq_bullet.wording import shorten
-from fuzzyq_bullet.xml_tree import Element
 
 Matrix: TypeAlias = NDArray[np.float64]
 """Shape (4, 4): from a frame's own coordinates to those of the frame around it."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.quantities import MAX_OBSTACLES
+from fuzzyq_bullet.reading.xml_tree import Element, read_xml
 from fuzzyq_bullet.scenario.importers.foreign import (
     THIN,
     ForeignMap,
@@ -24,7 +25,6 @@ from fuzzyq_bullet.scenario.importers.gazebo.poses import HERE, Matrix, Scope
 from fuzzyq_bullet.scenario.importers.registry import register_importer
 from fuzzyq_bullet.scenario.places import Bounds
 from fuzzyq_bullet.wording import shorten
-from fuzzyq_bullet.xml_tree import Element, read_xml
 
 _MARGIN = 1.0
 """Free space around all that stands in a world (m)."""

@@ -11,11 +11,11 @@ from typing import Annotated, Literal, TypeAlias
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, Strict
 
-from fuzzyq_bullet.child import ChildError, LineChild
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.planning.base import Observation
 from fuzzyq_bullet.planning.commands import Answer, CommandSettings
-from fuzzyq_bullet.planning.process_messages import Goal, Greeting, Lines, Robot, Seen, read_reply
+from fuzzyq_bullet.planning.process.child import ChildError, LineChild
+from fuzzyq_bullet.planning.process.messages import Goal, Greeting, Lines, Robot, Seen, read_reply
 from fuzzyq_bullet.version import __version__
 from fuzzyq_bullet.wording import shorten
 

@@ -10,7 +10,7 @@ import numpy as np
 from fuzzyq_bullet.physics.camera import Lens, Mesh
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT, WALL_THICKNESS
 from fuzzyq_bullet.video import style
-from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for, pointer
+from fuzzyq_bullet.video.map.footprints import Floats, clipped, corners_for, pointer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -12,7 +12,7 @@ from PIL import Image, ImageChops
 from fuzzyq_bullet.video import paint, style
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.video.map.footprints import Floats
 
 _WIDTH = 2.4
 """Width of the way (points)."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.physics.camera import NOTHING, Lens, Mesh, Picture, Window, lit
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.video.map.footprints import Floats
 
 _BAND = 64
 """Rows of a triangle that are filled at a time: few enough to stay in the processor's cache."""

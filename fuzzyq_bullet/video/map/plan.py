@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.footprints import Floats, clipped, corners_for, pointer
+from fuzzyq_bullet.video.map.footprints import Floats, clipped, corners_for, pointer
 from fuzzyq_bullet.video.marks import grid_step
 from fuzzyq_bullet.video.style import MAP
 

@@ -11,22 +11,23 @@ from numpy.typing import ArrayLike
 from PIL import Image, ImageChops, ImageDraw
 
 from fuzzyq_bullet.physics.camera import Lens, Mesh, Picture, RobotCamera
-from fuzzyq_bullet.video import meshes, paint, style
-from fuzzyq_bullet.video.cameras import Camera, FixedCamera
-from fuzzyq_bullet.video.footprints import circle, pointer
+from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.map.footprints import circle, pointer
+from fuzzyq_bullet.video.map.trail import Trail
 from fuzzyq_bullet.video.marks import cross, diamond, grid_step, reticle
 from fuzzyq_bullet.video.paint import DirtyRegion
-from fuzzyq_bullet.video.shots import SPAN, Shot
-from fuzzyq_bullet.video.solid_movers import DETAIL, SolidMovers, lay_pixels, put_back
-from fuzzyq_bullet.video.still import photograph
+from fuzzyq_bullet.video.scene import meshes
+from fuzzyq_bullet.video.scene.cameras import Camera, FixedCamera
+from fuzzyq_bullet.video.scene.shots import SPAN, Shot
+from fuzzyq_bullet.video.scene.solid_movers import DETAIL, SolidMovers, lay_pixels, put_back
+from fuzzyq_bullet.video.scene.still import photograph
+from fuzzyq_bullet.video.scene.viewpoint import extent_of
 from fuzzyq_bullet.video.style import SCENE, Rect
 from fuzzyq_bullet.video.timeline import Sensed, Steady
-from fuzzyq_bullet.video.trail import Trail
-from fuzzyq_bullet.video.viewpoint import extent_of
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.video.map.footprints import Floats
     from fuzzyq_bullet.video.timeline import Moment
 
 _FILL, _EDGE = 88, 235

@@ -7,24 +7,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.rules_turn import has_rules
+from fuzzyq_bullet.record.rules_turn import has_rules
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.avoidance import Avoidance
-from fuzzyq_bullet.video.footprints import Floats, arrow
-from fuzzyq_bullet.video.legend import legend, note
+from fuzzyq_bullet.video.map.avoidance import Avoidance
+from fuzzyq_bullet.video.map.footprints import Floats, arrow
+from fuzzyq_bullet.video.map.legend import legend, note
+from fuzzyq_bullet.video.map.plan import Plan
+from fuzzyq_bullet.video.map.trail import Trail
 from fuzzyq_bullet.video.marks import began, cross, diamond, left_off, passed, reticle
 from fuzzyq_bullet.video.movers import DrawnMovers, draw_mover
 from fuzzyq_bullet.video.paint import DirtyRegion
-from fuzzyq_bullet.video.plan import Plan
+from fuzzyq_bullet.video.scene.viewpoint import extent_of
 from fuzzyq_bullet.video.style import MAP, Rect
 from fuzzyq_bullet.video.timeline import Sensed, Steady
-from fuzzyq_bullet.video.trail import Trail
-from fuzzyq_bullet.video.viewpoint import extent_of
 
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-    from fuzzyq_bullet.trajectory import Trajectory
+    from fuzzyq_bullet.record.trajectory import Trajectory
     from fuzzyq_bullet.video.timeline import Moment
 
 _LINE = 3.6

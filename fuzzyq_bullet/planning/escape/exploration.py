@@ -14,14 +14,14 @@ from functools import partial
 from typing import NamedTuple, TypeAlias
 
 from fuzzyq_bullet.planning.base import USUAL_SPEED, Floats, Observation
-from fuzzyq_bullet.planning.cost_to_go import NO_HITS, TIGHT, ObstacleMap
-from fuzzyq_bullet.planning.frontiers import (
+from fuzzyq_bullet.planning.escape.cost_to_go import NO_HITS, TIGHT, ObstacleMap
+from fuzzyq_bullet.planning.escape.frontiers import (
     Frontier,
     along,
     find_concave_corners,
     find_frontiers,
 )
-from fuzzyq_bullet.planning.open_path import open_path
+from fuzzyq_bullet.planning.escape.open_path import open_path
 from fuzzyq_bullet.planning.scan import Point, Scan, scan_360
 
 ToGo: TypeAlias = Callable[[float, float], float]

@@ -15,11 +15,11 @@ import math
 
 from fuzzyq_bullet.planning.aim import Aim, along_heading, towards_goal
 from fuzzyq_bullet.planning.base import USUAL_RANGE, Observation
-from fuzzyq_bullet.planning.cost_to_go import NO_HITS
 from fuzzyq_bullet.planning.decision import Mode
-from fuzzyq_bullet.planning.exploration import NEAR, ExplorationGraph, Judge
-from fuzzyq_bullet.planning.frontiers import Frontier
-from fuzzyq_bullet.planning.path_follower import NEARER, PathFollower, Segment
+from fuzzyq_bullet.planning.escape.cost_to_go import NO_HITS
+from fuzzyq_bullet.planning.escape.exploration import NEAR, ExplorationGraph, Judge
+from fuzzyq_bullet.planning.escape.frontiers import Frontier
+from fuzzyq_bullet.planning.escape.path_follower import NEARER, PathFollower, Segment
 from fuzzyq_bullet.planning.ray_search import eased, ray_search
 from fuzzyq_bullet.planning.scan import Point
 

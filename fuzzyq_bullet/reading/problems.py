@@ -11,8 +11,8 @@ from typing import Any, TypeAlias
 from pydantic import BaseModel
 
 from fuzzyq_bullet.quantities import ModelRegistry
+from fuzzyq_bullet.reading.yaml_tree import Node
 from fuzzyq_bullet.wording import did_you_mean, shorten
-from fuzzyq_bullet.yaml_tree import Node
 
 Loc: TypeAlias = tuple[str | int, ...]
 

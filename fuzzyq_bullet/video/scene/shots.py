@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fuzzyq_bullet.video.viewpoint import way
+from fuzzyq_bullet.video.scene.viewpoint import way
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.video.map.footprints import Floats
 
 WHOLE = 14.0
 """A way that spans no more (m) is filmed in one shot."""

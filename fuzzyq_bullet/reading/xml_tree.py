@@ -11,7 +11,7 @@ from typing import Any
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
-from fuzzyq_bullet.untrusted import number
+from fuzzyq_bullet.reading.untrusted import number
 from fuzzyq_bullet.wording import shorten
 
 _MAX_BYTES = 20_000_000

@@ -9,17 +9,18 @@ from numpy.typing import NDArray
 from PIL import Image, ImageChops
 
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
-from fuzzyq_bullet.video import meshes, paint, style
-from fuzzyq_bullet.video.footprints import corners_for
+from fuzzyq_bullet.video import paint, style
+from fuzzyq_bullet.video.map.footprints import corners_for
 from fuzzyq_bullet.video.movers import Drawn, DrawnMovers
-from fuzzyq_bullet.video.still import photograph
+from fuzzyq_bullet.video.scene import meshes
+from fuzzyq_bullet.video.scene.still import photograph
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from fuzzyq_bullet.physics.camera import Lens, Mesh
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.video.map.footprints import Floats
     from fuzzyq_bullet.video.timeline import Moment
 
 DETAIL = 2

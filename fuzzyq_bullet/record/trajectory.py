@@ -23,17 +23,17 @@ from fuzzyq_bullet.columns import documented as with_columns
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.geometry import Field as Obstacles
-from fuzzyq_bullet.moving import checked_poses, clearance_of, poses_of
 from fuzzyq_bullet.planning.commands import COMMAND_FIELDS, command_arrays
 from fuzzyq_bullet.planning.controllers import fields_of, fields_with
 from fuzzyq_bullet.planning.decision import FIELDS, RARE_FIELDS, Decision, rare_arrays
 from fuzzyq_bullet.planning.registry import planner_names
 from fuzzyq_bullet.planning.settings import PlannerSettings
-from fuzzyq_bullet.record_checks import check_collision, check_order, mistake_in_record
+from fuzzyq_bullet.reading.untrusted import read_arrays
+from fuzzyq_bullet.record.checks import check_collision, check_order, mistake_in_record
+from fuzzyq_bullet.record.moving import checked_poses, clearance_of, poses_of
 from fuzzyq_bullet.scenario.expectations import ANY_NAME
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.passing import passed_along
-from fuzzyq_bullet.untrusted import read_arrays
 from fuzzyq_bullet.version import __version__
 
 Floats: TypeAlias = NDArray[np.float64]

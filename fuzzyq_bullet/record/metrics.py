@@ -11,14 +11,14 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, SerializerFunctionWrapHandler, model_serializer
 
-from fuzzyq_bullet.fault import at_fault, speeds_in_words
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
 from fuzzyq_bullet.ground_truth.open_space import has_open_space
 from fuzzyq_bullet.planning import MODES
-from fuzzyq_bullet.rules_turn import share_turned
+from fuzzyq_bullet.record.fault import at_fault, speeds_in_words
+from fuzzyq_bullet.record.rules_turn import share_turned
+from fuzzyq_bullet.record.trajectory import Outcome, Trajectory
 from fuzzyq_bullet.scenario import Scenario
-from fuzzyq_bullet.trajectory import Outcome, Trajectory
 from fuzzyq_bullet.wording import plain
 
 MOST_ROUND = 1500

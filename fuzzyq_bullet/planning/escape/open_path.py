@@ -11,7 +11,7 @@ import numpy as np
 
 from fuzzyq_bullet.occupancy import SIXTEEN, OccupancyGrid
 from fuzzyq_bullet.planning.base import USUAL_SPEED
-from fuzzyq_bullet.planning.cost_to_go import ObstacleMap
+from fuzzyq_bullet.planning.escape.cost_to_go import ObstacleMap
 from fuzzyq_bullet.planning.scan import Point
 
 TIGHT_SPEED = 0.2

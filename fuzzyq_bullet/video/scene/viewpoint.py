@@ -11,8 +11,8 @@ from fuzzyq_bullet.physics.camera import Lens
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_THICKNESS
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.video.map.footprints import Floats
 
 FIELD_OF_VIEW = math.radians(26.0)
 """Narrow: far things stay nearly as large as near ones."""

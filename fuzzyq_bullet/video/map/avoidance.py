@@ -9,11 +9,11 @@ import numpy as np
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.video.footprints import Floats, clipped
+from fuzzyq_bullet.video.map.footprints import Floats, clipped
 
 if TYPE_CHECKING:
+    from fuzzyq_bullet.record.trajectory import Trajectory
     from fuzzyq_bullet.shapes import Shape
-    from fuzzyq_bullet.trajectory import Trajectory
 
 _TOUCHING = 0.02
 """Obstacles no farther apart than about this are one (m)."""

@@ -20,8 +20,8 @@ from typing import NamedTuple, TypeAlias
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.learning import Policy
 from fuzzyq_bullet.planning.base import USUAL_SPEED
-from fuzzyq_bullet.planning.exploration import ENCLOSED, WaysOut
-from fuzzyq_bullet.untrusted import shown
+from fuzzyq_bullet.planning.escape.exploration import ENCLOSED, WaysOut
+from fuzzyq_bullet.reading.untrusted import shown
 
 Place: TypeAlias = tuple[int, int]
 """Column and row of a square cell of the world."""

@@ -10,14 +10,14 @@ import numpy as np
 from fuzzyq_bullet.physics.camera import Lens
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT
 from fuzzyq_bullet.video import paint
-from fuzzyq_bullet.video.shots import Shots
-from fuzzyq_bullet.video.viewpoint import CROSSED, lens_for
+from fuzzyq_bullet.video.scene.shots import Shots
+from fuzzyq_bullet.video.scene.viewpoint import CROSSED, lens_for
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fuzzyq_bullet.trajectory import Trajectory
-    from fuzzyq_bullet.video.footprints import Floats
+    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.video.map.footprints import Floats
     from fuzzyq_bullet.video.timeline import Moment
 
 _METRE = 180.0

@@ -1,0 +1,1 @@
+"""The planner ``process``: a program of one's own, in any language."""

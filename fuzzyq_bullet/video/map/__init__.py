@@ -1,0 +1,1 @@
+"""The map: everything from straight above, with the way so far."""
