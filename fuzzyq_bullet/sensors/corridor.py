@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzyq_bullet.planning.base import RangeSensor, sees_far
+from fuzzyq_bullet.planning.base import RangeSensor
 from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.sensors.base import SensorModel
 from fuzzyq_bullet.sensors.noise import RayNoise
@@ -35,10 +35,9 @@ larger robot or for thinner obstacles, there are more of them (``offsets``).
 WIDEST = 0.05
 """Rays are always nearer to each other than this (m): a right angle that points between two of them
 then comes no nearer than half of it unseen, which the safety filter's reserve makes up for."""
-BESIDE = 0.002
-"""How far outside the robot's own side the last ray but one runs if it sees far (m). With the
-usual range it runs where ``SPREAD`` says: for a robot of more than 0.2 m within its side, so that
-what is met at a flat angle may come nearer."""
+BESIDE = 0.0002
+"""How far outside the robot's own side the last ray but one runs at least (m): as far as ``SPREAD``
+says for the paper's robot. For a larger one that would be within its side."""
 
 
 def offsets(half_width: float, spacing: float = WIDEST, side: float = float(SPREAD[-2])) -> Floats:
@@ -106,8 +105,7 @@ class CorridorSensor:
         self._noise = noise
         self.radius = wide = robot.radius + SENSOR_MARGIN
         self.range = model.range_on(robot)
-        far = sees_far(self.range, robot.radius)
-        side = (robot.radius + BESIDE) / wide if far else float(SPREAD[-2])
+        side = max(float(SPREAD[-2]), (robot.radius + BESIDE) / wide)
         aside = wide * offsets(wide, spacing, side)
         rims = np.sqrt(wide**2 - aside**2)
         self._rims = np.repeat(rims, 2)
