@@ -96,12 +96,12 @@ def test_a_row_of_another_run_and_what_is_left_behind_are_told(broken: Path) -> 
     ]
 
 
-def test_memory_that_grows_is_told_apart_from_ups_and_downs(tmp_path: Path) -> None:
+def test_memory_that_grows_is_told_apart_from_ups_and_downs_and_one_step(tmp_path: Path) -> None:
     flat, grown = Ledger(tmp_path / "flat"), Ledger(tmp_path / "grown")
     for ledger, growth in ((flat, 0.0), (grown, 0.05)):
         ledger.note("life", 0)
         for rows in range(0, 1000, 10):
-            held = 100.0 + growth * rows + (rows // 10) % 2
+            held = 100.0 + growth * rows + (rows // 10) % 2 + (20.0 if rows > 780 else 0.0)
             told = {"life": 1, "rows": rows, "command": held, "workers": {"7": held}}
             ledger.note("sample", told)
     for name in ("command", "workers"):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.stats import theilslopes
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.record.trajectory import Trajectory
@@ -83,7 +84,8 @@ def memory(ledger: Ledger, episodes: int) -> dict[str, dict[str, float | None]]:
     """Return what the command and its workers held (MB): at first, at last, at most, and growth.
 
     At first and at last are those of the quiet part, where the same processes lived all the time;
-    the most is of the whole soak. Growth is the slope over a thousand episodes, for the workers of
+    the most is of the whole soak. Growth is the slope over a thousand episodes (Theil and Sen: the
+    median of all, which no single step upwards in the largest field changes), for the workers of
     the mean of those that were there; None where there were fewer than ``ENOUGH``.
     """
     quiet = list(quiet_samples(ledger, episodes)) or ledger.samples
@@ -106,6 +108,6 @@ def _summed_up(
 ) -> dict[str, float | None]:
     slope = None
     if rows[-1] - rows[0] >= ENOUGH:
-        slope = round(float(np.polyfit(rows, during, 1)[0]) * 1000.0, 1)
+        slope = round(float(theilslopes(during, rows).slope) * 1000.0, 1)
     first, last, most = (round(value, 1) for value in (during[0], during[-1], max(always)))
     return {"first": first, "last": last, "most": most, "growth": slope}
