@@ -28,8 +28,8 @@ if TYPE_CHECKING:
         WheelCommand,
         register_planner,
     )
-    from fuzzyq_bullet.record.metrics import Result, result_of
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.metrics import Result, result_of
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.scenario import Scenario, load_scenario, with_options
     from fuzzyq_bullet.video.record import frame, record
 
@@ -63,15 +63,15 @@ _HOMES = {
     "PlannerSettings": "planning",
     "TwistCommand": "planning",
     "WheelCommand": "planning",
-    "Result": "record.metrics",
+    "Result": "recording.metrics",
     "Scenario": "scenario",
-    "Trajectory": "record.trajectory",
+    "Trajectory": "recording.trajectory",
     "UserError": "errors",
     "frame": "video",
     "load_scenario": "scenario",
     "record": "video",
     "register_planner": "planning",
-    "result_of": "record.metrics",
+    "result_of": "recording.metrics",
     "run": "episode",
     "with_options": "scenario",
 }

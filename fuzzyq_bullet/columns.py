@@ -2,7 +2,7 @@
 
 The arrays of a record, the checks of a record's file, its CSV and its documentation follow from the
 declarations: those of a decision in ``planning/decision.py``, those of a tick in
-``record/trajectory.py``.
+``recording/trajectory.py``.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ from fuzzyq_bullet.planning.consult import ask, build_planner, closing, refusal
 from fuzzyq_bullet.planning.controllers import fields_of
 from fuzzyq_bullet.planning.decision import DecisionError, checked
 from fuzzyq_bullet.planning.traffic.guard import Guard
-from fuzzyq_bullet.record.trajectory import Outcome, Trajectory
+from fuzzyq_bullet.recording.trajectory import Outcome, Trajectory
 from fuzzyq_bullet.scenario import check, realise
 from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.models import Limits, Scenario

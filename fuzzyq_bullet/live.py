@@ -20,8 +20,8 @@ from fuzzyq_bullet.physics.camera import Mesh
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.window import Line, Window, WindowClosed
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.record.moving import Floats, first_poses, poses_between
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.moving import Floats, first_poses, poses_between
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario, check, realise
 from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.captions import outcome_lines

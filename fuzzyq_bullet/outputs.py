@@ -12,7 +12,7 @@ from pathlib import Path
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.filming import ANIMATION_SIZE, EXPLAIN, USUAL_SIZE, VIEWS, Filming
 from fuzzyq_bullet.planning.settings import PolicySettings
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario, find_scenario
 
 _ASIDE = {"description", "expect"}

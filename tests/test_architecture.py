@@ -96,7 +96,7 @@ def test_only_physics_knows_pybullet() -> None:
     ("rooms", "unknown"),
     [
         (("fuzzy", "learning"), ("planning", "scenario", "physics", "drives", "robots")),
-        (("planning",), ("physics", "drives", "video", "checks", "studies", "record")),
+        (("planning",), ("physics", "drives", "video", "checks", "studies", "recording")),
         (("planning", "drives", "physics", "fuzzy"), ("ground_truth",)),
         (
             ("planning", "scenario", "physics", "drives", "video", "checks", "studies", "training"),

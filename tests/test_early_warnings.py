@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fuzzyq_bullet.doctor.early_warnings import early_warnings
+from fuzzyq_bullet.early_warnings import early_warnings
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.scenario import bundled_scenarios, find_scenario, load_scenario, realise
 from tests.helpers.commands import Call

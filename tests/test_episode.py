@@ -14,9 +14,9 @@ from fuzzyq_bullet.ground_truth import shortest_path
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, FuzzySettings, ImprovedFuzzySettings
-from fuzzyq_bullet.record import metrics
-from fuzzyq_bullet.record.metrics import result_of
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording import metrics
+from fuzzyq_bullet.recording.metrics import result_of
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.robots import FUZZYQ
 from fuzzyq_bullet.scenario import (
     Arena,

@@ -19,7 +19,7 @@ from fuzzyq_bullet.episode import Episode, planner_of, run_in, world_of
 from fuzzyq_bullet.live import KEYS, Spectator, moving_meshes, still_meshes
 from fuzzyq_bullet.physics.window import Line, WindowClosed
 from fuzzyq_bullet.planning import Decision
-from fuzzyq_bullet.record.moving import headings_of, poses_at
+from fuzzyq_bullet.recording.moving import headings_of, poses_at
 from fuzzyq_bullet.scenario import Scenario, parse_scenario
 from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.explanation import reason

@@ -18,7 +18,7 @@ import pytest
 from fuzzyq_bullet import Decision, Trajectory
 from fuzzyq_bullet.columns import Columns
 from fuzzyq_bullet.planning.decision import RARE_FIELDS
-from fuzzyq_bullet.record.trajectory import DECISIONS, OPTIONAL, TICKS, Decisions, Ticks
+from fuzzyq_bullet.recording.trajectory import DECISIONS, OPTIONAL, TICKS, Decisions, Ticks
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "record.md"
 GROUPS = {"ticks": TICKS, "decisions": DECISIONS}

@@ -11,7 +11,7 @@ import pytest
 
 from fuzzyq_bullet import Trajectory, load_scenario, result_of, run
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.record.rules_turn import asked
+from fuzzyq_bullet.recording.rules_turn import asked
 from fuzzyq_bullet.scenario import with_options
 from tests.helpers.synthetic import drive, modes
 

@@ -16,7 +16,7 @@ from fuzzyq_bullet.checks.verdict import Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes, write_text
 from fuzzyq_bullet.platforms import data_folder, pybullet_in_words
-from fuzzyq_bullet.record.metrics import Result
+from fuzzyq_bullet.recording.metrics import Result
 from fuzzyq_bullet.version import __version__
 
 FILE = "check-record.json"

@@ -14,15 +14,15 @@ from pathlib import Path
 import numpy as np
 
 from fuzzyq_bullet.checks.verdict import Job, Touch, Verdict, explanation, replay_command
-from fuzzyq_bullet.doctor.early_warnings import NO_WAY, early_warnings
+from fuzzyq_bullet.early_warnings import NO_WAY, early_warnings
 from fuzzyq_bullet.errors import PlannerError, UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.registry import settings_for
 from fuzzyq_bullet.reading.yaml_tree import Node, read_tree
-from fuzzyq_bullet.record.fault import speeds_in_words
-from fuzzyq_bullet.record.metrics import Result, has_way, name_of, result_of, touch_in_words
-from fuzzyq_bullet.record.moving import nearest_to
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.fault import speeds_in_words
+from fuzzyq_bullet.recording.metrics import Result, has_way, name_of, result_of, touch_in_words
+from fuzzyq_bullet.recording.moving import nearest_to
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import (
     Scenario,
     find_scenario,

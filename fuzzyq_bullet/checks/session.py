@@ -19,7 +19,7 @@ from fuzzyq_bullet.checks.verdict import Job, Keep, Verdict, check_command, repl
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.outputs import refuse_other_run
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.workers import WorkerPool
 
 FILM_TIMEOUT = 900.0

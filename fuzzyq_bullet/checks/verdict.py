@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeAlias, get_args
 from pydantic import BaseModel, ConfigDict
 
 from fuzzyq_bullet.errors import printable
-from fuzzyq_bullet.record.metrics import Result
+from fuzzyq_bullet.recording.metrics import Result
 from fuzzyq_bullet.wording import plain
 from fuzzyq_bullet.workers.pool import MEMORY_MB, TIMEOUT
 

@@ -11,7 +11,7 @@ from fuzzyq_bullet.cli.options import FOLDER, PluginOption, ReplaceOption
 from fuzzyq_bullet.errors import UserError
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 GROUPS: tuple[Literal["ticks", "decisions"], ...] = ("ticks", "decisions")
 
@@ -50,8 +50,8 @@ def export(
         raise UserError("nothing to export: --csv or --mcap says in which form")
     from fuzzyq_bullet.files import refuse_inputs, writable_files, written_beside
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run
-    from fuzzyq_bullet.record.moving import movers_csv
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.moving import movers_csv
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
     record = Trajectory.load(trajectory)
     has_movers = csv and bool(record.movers.size)

@@ -26,7 +26,7 @@ from fuzzyq_bullet.filming import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 _MEDIA = {".mp4", ".gif", ".webp", ".png", ".avi", ".mov", ".mkv", ".webm", ".m4v", ".jpg", ".ogv"}
 

@@ -58,7 +58,7 @@ def page(
     from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_others_file
     from fuzzyq_bullet.page import MARK, lesson_page, record_page
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
     trajectories = [Trajectory.load(path) for path in given]
     folder = out or (given[0].parent if given else Path("out"))

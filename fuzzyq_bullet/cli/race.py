@@ -25,7 +25,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.wording import shorten
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 LEAST, MOST = 2, 4
 
@@ -89,7 +89,7 @@ def race(
     if json:
         from json import dumps
 
-        from fuzzyq_bullet.record.metrics import result_of
+        from fuzzyq_bullet.recording.metrics import result_of
 
         typer.echo(dumps([result_of(run).model_dump(mode="json") for run in runs], indent=2))
 
@@ -110,7 +110,7 @@ def _of_records(
     """Race records."""
     from fuzzyq_bullet.files import refuse_inputs, writable_files
     from fuzzyq_bullet.outputs import plugin_inputs
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
     if not LEAST <= len(records) <= MOST:
         raise UserError(f"race: needs {LEAST} to {MOST} records; got {len(records)}")
@@ -142,7 +142,7 @@ def _of_scenario(
     """Let planners drive a scenario, and race them."""
     from fuzzyq_bullet.files import refuse_inputs, writable_files, write_text
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run, run_name, scenario_inputs
-    from fuzzyq_bullet.record.metrics import result_of
+    from fuzzyq_bullet.recording.metrics import result_of
     from fuzzyq_bullet.scenario import load_scenario, realise
 
     given = load_scenario(scenario, policies=False)  # the planners have their own

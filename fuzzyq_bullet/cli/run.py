@@ -33,8 +33,8 @@ from fuzzyq_bullet.errors import UserError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fuzzyq_bullet.record.metrics import Result
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.metrics import Result
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.scenario import Scenario
 
 
@@ -98,8 +98,8 @@ def run(
 
     refuse_others()
 
-    from fuzzyq_bullet.doctor.early_warnings import early_warnings
-    from fuzzyq_bullet.record.metrics import result_of
+    from fuzzyq_bullet.early_warnings import early_warnings
+    from fuzzyq_bullet.recording.metrics import result_of
     from fuzzyq_bullet.scenario.expectations import unmet_expectations
 
     for warning in early_warnings(scenario, asked, task):
@@ -157,7 +157,7 @@ def replay(
     )
     from fuzzyq_bullet.files import refuse_inputs, writable_files
     from fuzzyq_bullet.outputs import plugin_inputs, refuse_other_run
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
     record = Trajectory.load(trajectory)
     folder = out or trajectory.parent
@@ -203,7 +203,7 @@ def summarise(
     result: Result, misses: Sequence[str], trajectory: Trajectory, *, listed: int
 ) -> None:
     """Say how a run went; ``listed`` obstacles of it are in the scenario file."""
-    from fuzzyq_bullet.record.metrics import collision_text
+    from fuzzyq_bullet.recording.metrics import collision_text
     from fuzzyq_bullet.wording import plain
 
     clearance = result.min_clearance_m

@@ -48,7 +48,7 @@ def validate(
 
 def _look_at(file: str) -> tuple[tuple[str, ...], list[str]]:
     """Return what is wrong with a file, and what is allowed and yet hardly meant."""
-    from fuzzyq_bullet.doctor.early_warnings import early_warnings
+    from fuzzyq_bullet.early_warnings import early_warnings
     from fuzzyq_bullet.scenario import load_scenario, realise
 
     try:

@@ -44,7 +44,7 @@ def watch(
     from fuzzyq_bullet import live
     from fuzzyq_bullet.physics.engine import silenced
     from fuzzyq_bullet.physics.window import WindowClosed
-    from fuzzyq_bullet.record.metrics import result_of
+    from fuzzyq_bullet.recording.metrics import result_of
     from fuzzyq_bullet.scenario.expectations import unmet_expectations
 
     try:

@@ -13,7 +13,7 @@ from fuzzyq_bullet.doctor.sight import examine_sight
 from fuzzyq_bullet.doctor.touch import examine_touch
 from fuzzyq_bullet.physics.inspection import Inspection
 from fuzzyq_bullet.reading.problems import Loc
-from fuzzyq_bullet.record.metrics import has_way
+from fuzzyq_bullet.recording.metrics import has_way
 from fuzzyq_bullet.scenario import Scenario, realise
 from fuzzyq_bullet.scenario.places import Goal, Start
 

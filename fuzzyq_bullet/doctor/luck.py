@@ -12,7 +12,7 @@ from fuzzyq_bullet.doctor.finding import Finding
 from fuzzyq_bullet.geometry import WALL, Field, Floats
 from fuzzyq_bullet.ground_truth import shortest_path
 from fuzzyq_bullet.reading.problems import Loc
-from fuzzyq_bullet.record.metrics import MOST_ROUND
+from fuzzyq_bullet.recording.metrics import MOST_ROUND
 from fuzzyq_bullet.scenario import Scenario
 
 LUCK = 0.005

@@ -14,7 +14,7 @@ from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Motion, Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.settings import GuardedSettings
-from fuzzyq_bullet.record.trajectory import Collision
+from fuzzyq_bullet.recording.trajectory import Collision
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.passing import Passing
 from fuzzyq_bullet.scenario.robot import Robot

@@ -10,7 +10,7 @@ from fuzzyq_bullet.physics.movers import Mover
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.sensor_world import SensorWorld
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.record.trajectory import Collision
+from fuzzyq_bullet.recording.trajectory import Collision
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.robot import Robot
 

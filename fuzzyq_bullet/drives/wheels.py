@@ -22,7 +22,7 @@ from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning.base import Motion
 from fuzzyq_bullet.planning.decision import Decision
-from fuzzyq_bullet.record.trajectory import Collision
+from fuzzyq_bullet.recording.trajectory import Collision
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.sensors import SENSOR_MARGIN
 

@@ -24,8 +24,8 @@ from foxglove.messages import Log, LogLevel
 from fuzzyq_bullet.columns import Column, Columns
 from fuzzyq_bullet.export import scene
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.record.moving import headings_of
-from fuzzyq_bullet.record.trajectory import TICKS, Trajectory
+from fuzzyq_bullet.recording.moving import headings_of
+from fuzzyq_bullet.recording.trajectory import TICKS, Trajectory
 from fuzzyq_bullet.video.captions import outcome_lines
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.explanation import reason

@@ -36,7 +36,7 @@ from foxglove.messages import (
 from fuzzyq_bullet.geometry import Floats
 from fuzzyq_bullet.physics.camera import Mesh
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_HEIGHT
-from fuzzyq_bullet.record.trajectory import Ticks, Trajectory
+from fuzzyq_bullet.recording.trajectory import Ticks, Trajectory
 from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.video import style

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from fuzzyq_bullet.figures.style import GREY, INK
 from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.video.scene.viewpoint import extent_of
 
 ENDS = {

@@ -20,8 +20,8 @@ from fuzzyq_bullet.figures.style import INK, save_png
 from fuzzyq_bullet.figures.topdown import LEGEND, draw_run
 from fuzzyq_bullet.files import writable_folder
 from fuzzyq_bullet.platforms import data_folder
-from fuzzyq_bullet.record.metrics import result_of
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.metrics import result_of
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario, load_scenario, with_options
 
 ENDS = {

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.record.rules_turn import has_rules
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.rules_turn import has_rules
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.shapes import Obstacle
 from fuzzyq_bullet.video.map.footprints import arrow, pointer

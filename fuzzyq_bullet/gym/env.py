@@ -20,7 +20,7 @@ from fuzzyq_bullet.gym.tasks import TaskSource
 from fuzzyq_bullet.physics.engine import Engine
 from fuzzyq_bullet.physics.world import World
 from fuzzyq_bullet.planning import Decision, Observation
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Robot, Scenario
 from fuzzyq_bullet.training.rewards import USUAL, Transition
 from fuzzyq_bullet.video.map.map import Map

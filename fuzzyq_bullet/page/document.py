@@ -23,7 +23,7 @@ from fuzzyq_bullet.planning.settings import RoutineSettings, WeightsSettings
 from fuzzyq_bullet.version import __version__
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 MARK = "fuzzyq page"
 """Stands as ``generator`` in every page, so that one is known again."""

@@ -11,8 +11,8 @@ from fuzzyq_bullet.fuzzy import definition_of
 from fuzzyq_bullet.planning.commands import COMMAND_FIELDS
 from fuzzyq_bullet.planning.controllers import controller_of
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.record.moving import headings_of
-from fuzzyq_bullet.record.rules_turn import asked, has_rules
+from fuzzyq_bullet.recording.moving import headings_of
+from fuzzyq_bullet.recording.rules_turn import asked, has_rules
 from fuzzyq_bullet.video.captions import outcome_lines, planner_name, routine_name
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.explanation import aim_name, off_aim, reason
@@ -23,7 +23,7 @@ from fuzzyq_bullet.video.timeline import NO_DECISION, Timeline, sensor_range
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 MOST_TICKS = 6000
 """More are thinned out: at 20 a second those of five minutes are kept."""

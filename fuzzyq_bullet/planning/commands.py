@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -91,8 +91,15 @@ class CommandSettings(GuardedSettings):
     )
     guard: Annotated[bool, Strict()] = Field(
         default=False,
-        description="Whether the safety filter limits what it answers to what is free.",
+        description="Whether the safety filter limits what it answers to what is free, and among "
+        "moving obstacles to what is passively safe.",
     )
+
+    def doubts(self) -> Iterator[tuple[str, str]]:
+        """Yield what is allowed and yet hardly meant."""
+        yield from super().doubts()
+        if self.closing_speed is not None and not self.guard:
+            yield "closing_speed", "the safety filter reckons with it, but guard is false"
 
 
 def twist_of(command: TwistCommand | WheelCommand, motion: Motion | None) -> TwistCommand:

@@ -77,12 +77,6 @@ class GuardedSettings(PlannerSettings):
         """Return the speed (m/s) to reckon with where the fastest obstacle is so fast (m/s)."""
         return fastest if self.closing_speed is None else self.closing_speed
 
-    def doubts(self) -> Iterator[tuple[str, str]]:
-        """Yield what is allowed and yet hardly meant."""
-        yield from super().doubts()
-        if self.closing_speed is not None and not getattr(self, "guard", True):
-            yield "closing_speed", "the safety filter reckons with it, but guard is false"
-
     @model_serializer(mode="wrap")
     def _without_default(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Leave out that nothing was said: records and plans from before the key are the same."""

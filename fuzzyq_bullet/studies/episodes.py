@@ -12,8 +12,8 @@ from typing import Any, Literal, TypeAlias
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from fuzzyq_bullet.planning import PlannerSettings, settings_for
-from fuzzyq_bullet.record.metrics import Result
-from fuzzyq_bullet.record.trajectory import Outcome
+from fuzzyq_bullet.recording.metrics import Result
+from fuzzyq_bullet.recording.trajectory import Outcome
 from fuzzyq_bullet.scenario import Drive, Limits, Robot, Scenario, cellular_task, random_task
 from fuzzyq_bullet.scenario.layouts import Wanderers
 from fuzzyq_bullet.sensors import ExactSensor

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from fuzzyq_bullet.episode import run, run_with
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.studies.episodes import Job
 from fuzzyq_bullet.studies.options import POSITIONAL

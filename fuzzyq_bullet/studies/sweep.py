@@ -14,8 +14,8 @@ from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.errors import MachineError, PlannerError
 from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.ground_truth import feasible
-from fuzzyq_bullet.record.metrics import result_of
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.metrics import result_of
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario, realise
 from fuzzyq_bullet.sensors import SENSOR_MARGIN
 from fuzzyq_bullet.studies.episodes import Job, Row, as_csv

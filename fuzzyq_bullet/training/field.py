@@ -45,7 +45,7 @@ from fuzzyq_bullet.planning.escape.learned_exits import (
 )
 from fuzzyq_bullet.planning.fuzzy_q_lambda import FuzzyQLambdaPlanner, rule_policy
 from fuzzyq_bullet.planning.settings import FuzzyQLambdaSettings
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario.fields import field_digest
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.version import __version__

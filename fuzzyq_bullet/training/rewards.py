@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.physics.robot import RobotState
-from fuzzyq_bullet.record.trajectory import Outcome
+from fuzzyq_bullet.recording.trajectory import Outcome
 from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
 
 MOST = 1e6

@@ -12,7 +12,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import writable_files
 from fuzzyq_bullet.learning.checkpoint import WINDOW, Checkpoint, Curve, success
 from fuzzyq_bullet.learning.policy import load_policy
-from fuzzyq_bullet.record.metrics import shortest_length
+from fuzzyq_bullet.recording.metrics import shortest_length
 from fuzzyq_bullet.training.config import TrainingConfig
 from fuzzyq_bullet.training.field import FieldTask
 from fuzzyq_bullet.training.registry import learn

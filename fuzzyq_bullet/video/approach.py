@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fuzzyq_bullet.video.timeline import sensor_range
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 _AHEAD = math.radians(30.0)
 """What comes from no farther aside of the robot's heading (rad) comes from ahead."""

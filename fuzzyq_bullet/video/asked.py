@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 _NOTHING = "–"
 

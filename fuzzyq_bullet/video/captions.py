@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.record.rules_turn import has_rules
+from fuzzyq_bullet.recording.rules_turn import has_rules
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import reason, struck
 from fuzzyq_bullet.video.paint import DirtyRegion
@@ -16,7 +16,7 @@ from fuzzyq_bullet.video.style import HEADER, SCENE, STORY, Rect
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 _CLOCK = 240
 """Width of the clock (points)."""

@@ -15,7 +15,7 @@ from fuzzyq_bullet.video.views import Stage, view_factory
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
     from fuzzyq_bullet.video.timeline import Moment
 

@@ -10,7 +10,7 @@ from fuzzyq_bullet.video.explanation import is_clear, side_of
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.timeline import Moment
 
 HOLD = 0.5

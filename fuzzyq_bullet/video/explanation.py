@@ -9,13 +9,13 @@ import math
 from typing import TYPE_CHECKING
 
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.record.rules_turn import asked, controller_turns
+from fuzzyq_bullet.recording.rules_turn import asked, controller_turns
 from fuzzyq_bullet.video.approach import approaching
 from fuzzyq_bullet.video.timeline import NO_DECISION, sensor_range
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.quantities import Point
-from fuzzyq_bullet.record.trajectory import Decisions, Trajectory
+from fuzzyq_bullet.recording.trajectory import Decisions, Trajectory
 
 STRAIGHT = math.radians(5.0)
 """A heading no farther off the aim is called straight to it (rad)."""
@@ -200,8 +200,10 @@ def _makes_way(trajectory: Trajectory, index: int) -> str:
     decisions, tick = trajectory.decisions, int(trajectory.decisions.tick[index])
     backs_up = decisions.backward is not None and decisions.backward[index] == 1.0
     if (backs_up or gives_way(trajectory, index)) and float(decisions.reach[index]) >= _STANDS:
-        coming = approaching(trajectory, tick) or "Something moves near by"
-        return f"{coming}: {'backs up' if backs_up else 'gives way'}"
+        coming = approaching(trajectory, tick)
+        if backs_up and not coming and not trajectory.movers.size:
+            return "Backs up"
+        return f"{coming or 'Something moves near by'}: {'backs up' if backs_up else 'gives way'}"
     if min(float(decisions.step[index]), float(decisions.reach[index])) >= _STANDS:
         return ""
     coming = approaching(trajectory, tick)

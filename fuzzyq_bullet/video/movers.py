@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fuzzyq_bullet.record.moving import headings_of, poses_at
+from fuzzyq_bullet.recording.moving import headings_of, poses_at
 from fuzzyq_bullet.shapes.motion import placed
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.map.footprints import Floats, arrow
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from PIL import Image, ImageDraw
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.shapes import Shape
 
 _NOSE = 1.1

@@ -26,7 +26,7 @@ from fuzzyq_bullet.video.views.base import Sensing, known
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 _TITLE = 34
 """Height of the line above a scene (points)."""

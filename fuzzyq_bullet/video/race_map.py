@@ -20,7 +20,7 @@ from fuzzyq_bullet.video.timeline import Steady
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.map.footprints import Floats
     from fuzzyq_bullet.video.style import Rect
     from fuzzyq_bullet.video.timeline import Moment

@@ -15,7 +15,7 @@ from PIL import Image
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import written_beside
 from fuzzyq_bullet.filming import ANIMATION_FPS, EXPLAIN, FPS, MOST_ANIMATION_FPS, Filming
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.video.compositor import Compositor, closing
 from fuzzyq_bullet.video.encoders import ANIMATION_ENDINGS, Animation, Encoder, FrameBuffer
 from fuzzyq_bullet.video.race import Race

@@ -11,7 +11,7 @@ import numpy as np
 from fuzzyq_bullet.video.map.footprints import Floats, corridor
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 NO_DECISION = -1
 

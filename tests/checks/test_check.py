@@ -23,7 +23,7 @@ from fuzzyq_bullet.checks.session import check_all
 from fuzzyq_bullet.checks.verdict import Job, Verdict
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.platforms import data_folder
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.workers import WorkerPool
 from tests.helpers.commands import Call
 

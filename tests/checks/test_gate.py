@@ -19,7 +19,7 @@ import pytest
 from fuzzyq_bullet import Decision, Scenario, run
 from fuzzyq_bullet.errors import PlannerError
 from fuzzyq_bullet.planning.decision import DecisionError, checked
-from fuzzyq_bullet.record.metrics import result_of
+from fuzzyq_bullet.recording.metrics import result_of
 from fuzzyq_bullet.scenario import Expect, parse_scenario
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from tests.helpers.commands import FUZZYQ, Call

@@ -14,7 +14,7 @@ from fuzzyq_bullet.checks.group import allow, group_lines, group_of, worst_of
 from fuzzyq_bullet.checks.reports import junit_xml
 from fuzzyq_bullet.checks.verdict import Status, Verdict
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.record.metrics import Result
+from fuzzyq_bullet.recording.metrics import Result
 from fuzzyq_bullet.scenario import register_expectation
 from tests.checks.test_check import SCHEMA
 from tests.helpers.commands import Call

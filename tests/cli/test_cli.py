@@ -19,8 +19,8 @@ from typer.testing import CliRunner
 
 from fuzzyq_bullet import __version__
 from fuzzyq_bullet.cli.app import app
-from fuzzyq_bullet.record.metrics import collision_text
-from fuzzyq_bullet.record.trajectory import Collision, Trajectory
+from fuzzyq_bullet.recording.metrics import collision_text
+from fuzzyq_bullet.recording.trajectory import Collision, Trajectory
 from tests.helpers.commands import FUZZYQ, Call
 
 RESULT_KEYS = [

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet import Trajectory, UserError, load_scenario, run, with_options
-from fuzzyq_bullet.record.trajectory import DECISIONS, TICKS
+from fuzzyq_bullet.recording.trajectory import DECISIONS, TICKS
 from tests.helpers.commands import Call
 
 

@@ -23,7 +23,7 @@ from fuzzyq_bullet import Trajectory, load_scenario, run, with_options
 from fuzzyq_bullet.columns import Column
 from fuzzyq_bullet.export.mcap import mcap_of
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.record.trajectory import DECISIONS, TICKS, Collision
+from fuzzyq_bullet.recording.trajectory import DECISIONS, TICKS, Collision
 from fuzzyq_bullet.video import style
 
 SECOND = 10**9

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "extend" / "sensor.py"
 SCENARIO = """\

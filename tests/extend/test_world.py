@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fuzzyq_bullet import UserError, load_scenario, register_planner
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.robots import register_robot
 from fuzzyq_bullet.scenario import register_expectation
 from fuzzyq_bullet.scenario.importers import register_importer

@@ -6,7 +6,7 @@ import pytest
 
 from fuzzyq_bullet.ground_truth import feasible
 from fuzzyq_bullet.ground_truth.open_space import has_open_space
-from fuzzyq_bullet.record.metrics import has_way, shortest_length
+from fuzzyq_bullet.recording.metrics import has_way, shortest_length
 from fuzzyq_bullet.scenario import parse_scenario, random_task, realise
 from fuzzyq_bullet.shapes import Polygon
 

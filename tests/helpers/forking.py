@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 
 FUZZYQ = Path(sys.executable).with_name("fuzzyq")
 LOADED = (
-    *("fuzzyq_bullet.cli.app", "fuzzyq_bullet.episode", "fuzzyq_bullet.record.metrics"),
+    *("fuzzyq_bullet.cli.app", "fuzzyq_bullet.episode", "fuzzyq_bullet.recording.metrics"),
     *("fuzzyq_bullet.outputs", "fuzzyq_bullet.video", "rich.markdown", "typer.rich_utils"),
     *("scipy.ndimage", "scipy.spatial", "matplotlib.figure", "matplotlib.backends.backend_agg"),
 )

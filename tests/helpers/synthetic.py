@@ -11,7 +11,7 @@ import numpy as np
 from fuzzyq_bullet.fuzzy import paper_controller
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.settings import ImprovedFuzzySettings
-from fuzzyq_bullet.record.trajectory import Collision, Decisions, Outcome, Ticks, Trajectory
+from fuzzyq_bullet.recording.trajectory import Collision, Decisions, Outcome, Ticks, Trajectory
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder, Goal, Scenario, Start
 
 RADIUS = 0.2

@@ -9,7 +9,7 @@ import pytest
 from fuzzyq_bullet import Scenario, run
 from fuzzyq_bullet.episode import Episode, planner_of, world_of
 from fuzzyq_bullet.planning.base import RangeSensor
-from fuzzyq_bullet.record.fault import at_fault
+from fuzzyq_bullet.recording.fault import at_fault
 from fuzzyq_bullet.scenario import load_scenario, random_task, realise
 from fuzzyq_bullet.scenario.layouts import Wanderers
 from fuzzyq_bullet.video.explanation import reason

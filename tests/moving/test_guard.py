@@ -28,7 +28,7 @@ from fuzzyq_bullet.planning.traffic.guard import Guard
 from fuzzyq_bullet.planning.traffic.tracker import Traffic
 from fuzzyq_bullet.planning.traffic.twist_safety import rollout_twists, safe_twists
 from fuzzyq_bullet.planning.twist_filter import twist_filter
-from fuzzyq_bullet.record.fault import at_fault
+from fuzzyq_bullet.recording.fault import at_fault
 from fuzzyq_bullet.scenario import Limits, random_task, realise
 from fuzzyq_bullet.scenario.layouts import Wanderers
 from tests.helpers.commands import Call

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fuzzyq_bullet.doctor.early_warnings import early_warnings
+from fuzzyq_bullet.early_warnings import early_warnings
 from fuzzyq_bullet.scenario import load_scenario, realise
 from tests.moving.test_moving import ROOM, disc
 

@@ -12,8 +12,8 @@ from fuzzyq_bullet.episode import Episode, run, world_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import Decision
-from fuzzyq_bullet.record.metrics import collision_text, result_of
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.metrics import collision_text, result_of
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from fuzzyq_bullet.scenario.files import dump_scenario, load_scenario, parse_scenario

@@ -14,9 +14,9 @@ from PIL import Image
 from fuzzyq_bullet.doctor import examine
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.page.run_data import run_data
-from fuzzyq_bullet.record.metrics import has_way
-from fuzzyq_bullet.record.moving import headings_of, movers_csv, poses_at
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.metrics import has_way
+from fuzzyq_bullet.recording.moving import headings_of, movers_csv, poses_at
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.explanation import reason
 from fuzzyq_bullet.video.map.map import Map

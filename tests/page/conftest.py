@@ -11,7 +11,7 @@ import pytest
 
 from fuzzyq_bullet.fuzzy import ControllerDefinition, paper_definition
 from fuzzyq_bullet.page import lesson_page, record_page
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from tests.helpers import synthetic
 from tests.helpers.browser import CHROMIUM, Browser, browsing
 

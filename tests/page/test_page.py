@@ -15,7 +15,7 @@ import pytest
 from fuzzyq_bullet.page import record_page
 from fuzzyq_bullet.page.document import MODULES
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.record.trajectory import Decisions, Ticks, Trajectory
+from fuzzyq_bullet.recording.trajectory import Decisions, Ticks, Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.video.explanation import reason
 from fuzzyq_bullet.video.timeline import Timeline

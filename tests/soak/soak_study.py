@@ -18,7 +18,7 @@ from pydantic import Field
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.planning import PlannerSettings, ProcessSettings, planner_names, settings_for
 from fuzzyq_bullet.platforms import data_folder
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Drive, Limits, Scenario, load_scenario
 from fuzzyq_bullet.studies import (
     Environment,

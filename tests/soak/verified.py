@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import theilslopes
 
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.studies.episodes import Job, Row, as_csv
 from fuzzyq_bullet.studies.storage import rows_in
 from fuzzyq_bullet.studies.sweep import run_job

@@ -31,7 +31,7 @@ from fuzzyq_bullet.planning.q_learning import (
     sense,
     state_of,
 )
-from fuzzyq_bullet.record.metrics import result_of
+from fuzzyq_bullet.recording.metrics import result_of
 from fuzzyq_bullet.scenario import Scenario, load_scenario, parse_scenario
 from fuzzyq_bullet.training.problems import PATIENCE, DirectProblem, TrainingEpisode
 from fuzzyq_bullet.training.registry import learn, recipe_of

@@ -14,7 +14,7 @@ import pytest
 from fuzzyq_bullet import episode
 from fuzzyq_bullet.planning.base import STEP_UNIT
 from fuzzyq_bullet.planning.decision import MODES
-from fuzzyq_bullet.record.trajectory import Collision
+from fuzzyq_bullet.recording.trajectory import Collision
 from fuzzyq_bullet.scenario import Goal, load_scenario
 from fuzzyq_bullet.video.captions import Story
 from fuzzyq_bullet.video.compositor import Compositor
@@ -41,7 +41,7 @@ from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Timeline
 from tests.helpers.synthetic import drive, modes, scenario
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 
 def told(facing: float = 0.0, *, heading: float = 0.0, mode: int = 0, **columns: Any) -> Trajectory:

@@ -29,7 +29,7 @@ from tests.helpers.synthetic import drive, scenario
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 pytestmark = pytest.mark.usefixtures("still_once")
 SMALL = (320, 240)

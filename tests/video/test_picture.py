@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from fuzzyq_bullet.record.trajectory import Collision, Decisions, Ticks
+from fuzzyq_bullet.recording.trajectory import Collision, Decisions, Ticks
 from fuzzyq_bullet.scenario import Arena, Box, Cylinder
 from fuzzyq_bullet.scenario.places import Via
 from fuzzyq_bullet.video import frame, paint, style
@@ -29,7 +29,7 @@ from fuzzyq_bullet.video.timeline import Timeline, sensed_at
 from tests.helpers.synthetic import drive, modes, scenario
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
 
 
@@ -282,7 +282,7 @@ def test_every_kind_of_run_is_drawn_with_all_text_in_its_box(
 
     monkeypatch.setattr(paint, "write", write)
     for room in ("scene", "solid_movers"):  # smooth edges take time, and are no text
-        monkeypatch.setattr(f"fuzzyq_bullet.video.{room}.DETAIL", 1)
+        monkeypatch.setattr(f"fuzzyq_bullet.video.scene.{room}.DETAIL", 1)
     run = all_runs[name]
     regions: list[DirtyRegion] = []
     with Compositor(run) as compositor:

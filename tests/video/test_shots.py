@@ -20,7 +20,7 @@ from fuzzyq_bullet.video.timeline import Timeline
 from tests.helpers.synthetic import drive, scenario
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 
 @pytest.fixture(scope="module")

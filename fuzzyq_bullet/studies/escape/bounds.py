@@ -20,7 +20,7 @@ from fuzzyq_bullet.planning import Decision, Observation
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE
 from fuzzyq_bullet.planning.improved_fuzzy import ImprovedFuzzyBase
 from fuzzyq_bullet.planning.safety_filter import safety_filter
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.studies.episodes import Job
 from fuzzyq_bullet.studies.sweep import answer, room_of, run_job

@@ -12,7 +12,7 @@ import numpy as np
 from fuzzyq_bullet.episode import planner_of, run_with
 from fuzzyq_bullet.planning import Observation, Planner
 from fuzzyq_bullet.planning.process.planner import ProcessSettings
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.sensors import ExactSensor
 from fuzzyq_bullet.studies.episodes import Job

@@ -19,7 +19,7 @@ from pydantic import ValidationError
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.planning import planner_names, settings_for
-from fuzzyq_bullet.record.metrics import result_of
+from fuzzyq_bullet.recording.metrics import result_of
 from fuzzyq_bullet.scenario import Limits, realise
 from fuzzyq_bullet.studies.episodes import Environment, Job, Row
 from fuzzyq_bullet.studies.options import POSITIONAL

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.episode import run
 from fuzzyq_bullet.planning import ImprovedFuzzySettings
-from fuzzyq_bullet.record.trajectory import Trajectory
+from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Goal, Limits, Random, Scenario, Start
 from fuzzyq_bullet.studies.speed import Row, interleaved, median_ratio
 from fuzzyq_bullet.video import record

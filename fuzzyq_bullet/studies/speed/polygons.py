@@ -10,7 +10,7 @@ import numpy as np
 
 from fuzzyq_bullet.episode import Episode, world_of
 from fuzzyq_bullet.planning.consult import build_planner
-from fuzzyq_bullet.record.metrics import has_way
+from fuzzyq_bullet.recording.metrics import has_way
 from fuzzyq_bullet.scenario import Arena, Goal, Limits, Scenario, Start
 from fuzzyq_bullet.scenario.files import dump_scenario, parse_scenario
 from fuzzyq_bullet.studies.speed import Row, interleaved

@@ -12,7 +12,7 @@ from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.video.map.footprints import Floats, clipped
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.shapes import Shape
 
 _TOUCHING = 0.02

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.record.rules_turn import has_rules
+from fuzzyq_bullet.recording.rules_turn import has_rules
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.map.avoidance import Avoidance
 from fuzzyq_bullet.video.map.footprints import Floats, arrow
@@ -24,7 +24,7 @@ from fuzzyq_bullet.video.timeline import Sensed, Steady
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.timeline import Moment
 
 _LINE = 3.6

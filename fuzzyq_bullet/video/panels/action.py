@@ -16,7 +16,7 @@ from fuzzyq_bullet.video.style import ACTION
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 _DIAL = (108, 108)
 _RADIUS = 72

@@ -17,7 +17,7 @@ from fuzzyq_bullet.video.paint import DirtyRegion
 from fuzzyq_bullet.wording import error_in_words
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.layout import Layout
     from fuzzyq_bullet.video.style import Colour, Rect
     from fuzzyq_bullet.video.timeline import Moment

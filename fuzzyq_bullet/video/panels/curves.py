@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from fuzzyq_bullet.record.rules_turn import has_rules
+from fuzzyq_bullet.recording.rules_turn import has_rules
 from fuzzyq_bullet.video import style
 from fuzzyq_bullet.video.explanation import aim_name, off_aim
 from fuzzyq_bullet.video.panels.base import Canvas, Panel, register_panel
@@ -21,7 +21,7 @@ from fuzzyq_bullet.video.panels.rules import Rules
 from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.map.footprints import Floats
 
 Words: TypeAlias = Callable[[int], str]

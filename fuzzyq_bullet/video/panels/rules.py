@@ -25,7 +25,7 @@ from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.fuzzy.sets import Variable
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.map.footprints import Floats
 
 _LEFT, _TOP = 86, 48

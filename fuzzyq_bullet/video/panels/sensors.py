@@ -20,7 +20,7 @@ from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, Sensed, sensed_at,
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 _LENS: paint.Box = (8, 28, 182, 202)
 _DIAMETER = _LENS[2] - _LENS[0]

@@ -16,7 +16,7 @@ from fuzzyq_bullet.video.scene.viewpoint import CROSSED, lens_for
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.map.footprints import Floats
     from fuzzyq_bullet.video.timeline import Moment
 

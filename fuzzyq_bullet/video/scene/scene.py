@@ -26,7 +26,7 @@ from fuzzyq_bullet.video.style import SCENE, Rect
 from fuzzyq_bullet.video.timeline import Sensed, Steady
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.map.footprints import Floats
     from fuzzyq_bullet.video.timeline import Moment
 

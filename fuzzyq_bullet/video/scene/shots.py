@@ -14,7 +14,7 @@ import numpy as np
 from fuzzyq_bullet.video.scene.viewpoint import way
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.map.footprints import Floats
 
 WHOLE = 14.0

@@ -11,7 +11,7 @@ from fuzzyq_bullet.physics.camera import Lens
 from fuzzyq_bullet.physics.obstacle_urdf import OBSTACLE_HEIGHT, WALL_THICKNESS
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.map.footprints import Floats
 
 FIELD_OF_VIEW = math.radians(26.0)

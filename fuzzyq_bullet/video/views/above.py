@@ -8,7 +8,7 @@ from fuzzyq_bullet.video.map.map import Map
 from fuzzyq_bullet.video.views.base import Picture, register_view
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
     from fuzzyq_bullet.video.timeline import Moment
     from fuzzyq_bullet.video.views.base import Stage

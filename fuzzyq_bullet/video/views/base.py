@@ -14,7 +14,7 @@ from fuzzyq_bullet.video.style import Rect
 from fuzzyq_bullet.video.timeline import NO_DECISION, Sensed, sensed_at
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
     from fuzzyq_bullet.video.timeline import Moment
 

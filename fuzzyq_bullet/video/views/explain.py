@@ -14,7 +14,7 @@ from fuzzyq_bullet.video.views.base import Sensing, Stage, View, known, register
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.video.paint import DirtyRegion
     from fuzzyq_bullet.video.timeline import Moment
 

@@ -14,7 +14,7 @@ from fuzzyq_bullet.scenario.movers import courses_of
 from fuzzyq_bullet.shapes.motion import placed, seen_from
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
     from fuzzyq_bullet.scenario.models import Scenario
 
 Floats: TypeAlias = NDArray[np.float64]

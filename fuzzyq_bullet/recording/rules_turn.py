@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.planning import MODES
-from fuzzyq_bullet.record.trajectory import Decisions, Trajectory
+from fuzzyq_bullet.recording.trajectory import Decisions, Trajectory
 
 ALL = slice(None)
 CLEARLY = math.radians(3.0)

@@ -29,8 +29,8 @@ from fuzzyq_bullet.planning.decision import FIELDS, RARE_FIELDS, Decision, rare_
 from fuzzyq_bullet.planning.registry import planner_names
 from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.reading.untrusted import read_arrays
-from fuzzyq_bullet.record.checks import check_collision, check_order, mistake_in_record
-from fuzzyq_bullet.record.moving import checked_poses, clearance_of, poses_of
+from fuzzyq_bullet.recording.checks import check_collision, check_order, mistake_in_record
+from fuzzyq_bullet.recording.moving import checked_poses, clearance_of, poses_of
 from fuzzyq_bullet.scenario.expectations import ANY_NAME
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.passing import passed_along
@@ -131,7 +131,8 @@ class Trajectory:
         collision: The contact that ended it, if one did.
         ticks: The robot's motion.
         decisions: The planner's decisions.
-        movers: Where the moving obstacles were at every tick; see ``moving.poses_of``.
+        movers: Where the moving obstacles were at every tick; see
+            ``recording.moving.poses_of``.
         version: Version of fuzzyq_bullet that made it.
     """
 

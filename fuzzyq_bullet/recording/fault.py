@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzyq_bullet.record.moving import speed_at
+from fuzzyq_bullet.recording.moving import speed_at
 
 if TYPE_CHECKING:
-    from fuzzyq_bullet.record.trajectory import Trajectory
+    from fuzzyq_bullet.recording.trajectory import Trajectory
 
 FAULT_SPEED = 0.05
 """A robot that moves faster than this (m/s) when it touches something is at fault."""

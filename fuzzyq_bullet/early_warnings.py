@@ -10,7 +10,7 @@ from fuzzyq_bullet.fuzzy import ControllerDefinition
 from fuzzyq_bullet.fuzzy.definition_checks import gaps_of
 from fuzzyq_bullet.quantities import ANGLE_KEYS
 from fuzzyq_bullet.reading.problems import Loc, Problem, key_path
-from fuzzyq_bullet.record.metrics import has_way
+from fuzzyq_bullet.recording.metrics import has_way
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.scenario.files import problem_lines
 from fuzzyq_bullet.scenario.motion_warnings import doubtful_motions

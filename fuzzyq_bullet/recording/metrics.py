@@ -15,9 +15,9 @@ from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.ground_truth import feasible, shortest_path, spl
 from fuzzyq_bullet.ground_truth.open_space import has_open_space
 from fuzzyq_bullet.planning import MODES
-from fuzzyq_bullet.record.fault import at_fault, speeds_in_words
-from fuzzyq_bullet.record.rules_turn import share_turned
-from fuzzyq_bullet.record.trajectory import Outcome, Trajectory
+from fuzzyq_bullet.recording.fault import at_fault, speeds_in_words
+from fuzzyq_bullet.recording.rules_turn import share_turned
+from fuzzyq_bullet.recording.trajectory import Outcome, Trajectory
 from fuzzyq_bullet.scenario import Scenario
 from fuzzyq_bullet.wording import plain
 
