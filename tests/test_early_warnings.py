@@ -144,7 +144,13 @@ def test_settings_of_the_planner_that_are_hardly_meant_are_told(
 
 @pytest.mark.parametrize(
     "planner",
-    ["{name: dwa, rate: 2}", "{name: dwa, interval: 0.05}", "{name: apf, patience: 2}", "vfh"],
+    [
+        "{name: improved-fuzzy, guard: false, closing_speed: 0.4}",
+        "{name: dwa, rate: 2}",
+        "{name: dwa, interval: 0.05}",
+        "{name: apf, patience: 2}",
+        "vfh",
+    ],
 )
 def test_settings_that_may_be_meant_are_not_told(planner: str, tmp_path: Path) -> None:
     assert warnings_of(f"{HEAD}planner: {planner}\n", tmp_path) == []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -95,11 +95,9 @@ class CommandSettings(GuardedSettings):
         "moving obstacles to what is passively safe.",
     )
 
-    def doubts(self) -> Iterator[tuple[str, str]]:
-        """Yield what is allowed and yet hardly meant."""
-        yield from super().doubts()
-        if self.closing_speed is not None and not self.guard:
-            yield "closing_speed", "the safety filter reckons with it, but guard is false"
+    def heeds_closing_speed(self) -> bool:
+        """Return whether it is guarded."""
+        return self.guard
 
 
 def twist_of(command: TwistCommand | WheelCommand, motion: Motion | None) -> TwistCommand:

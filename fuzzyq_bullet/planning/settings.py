@@ -77,6 +77,16 @@ class GuardedSettings(PlannerSettings):
         """Return the speed (m/s) to reckon with where the fastest obstacle is so fast (m/s)."""
         return fastest if self.closing_speed is None else self.closing_speed
 
+    def heeds_closing_speed(self) -> bool:
+        """Return whether anything that the planner does depends on the closing speed."""
+        return True
+
+    def doubts(self) -> Iterator[tuple[str, str]]:
+        """Yield what is allowed and yet hardly meant."""
+        yield from super().doubts()
+        if self.closing_speed is not None and not self.heeds_closing_speed():
+            yield "closing_speed", "the safety filter reckons with it, but guard is false"
+
     @model_serializer(mode="wrap")
     def _without_default(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Leave out that nothing was said: records and plans from before the key are the same."""
@@ -201,6 +211,10 @@ class DirectSettings(GuardedSettings, PolicySettings):
         default=1.0,
         description="c_f in S_p: with less than this free towards the goal, it breaks out.",
     )
+
+    def heeds_closing_speed(self) -> bool:
+        """Return whether it has the safety filter, or ways out among what moves."""
+        return self.guard or self.breakout
 
 
 class QLearningSettings(DirectSettings):
