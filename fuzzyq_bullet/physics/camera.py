@@ -1,8 +1,8 @@
 """A fixed camera: where it sees what, and what it sees of the moving robot.
 
 The still world is drawn once, with its depth (``video/scene/still.py``), and the robot alone in
-every frame, in the small rectangle of the picture that it covers; the two depths tell which of them is in
-front. The cost of a frame does not depend on the world.
+every frame, in the small rectangle of the picture that it covers; the two depths tell which of
+them is in front. The cost of a frame does not depend on the world.
 """
 
 from __future__ import annotations

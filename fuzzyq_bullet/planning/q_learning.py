@@ -3,8 +3,8 @@
 They are the direct baselines of the paper's comparison, which only names them. Here a state tells
 how far each of three detection lines is free, an action is one of five headings relative to the
 line to the goal, and all steps have the same length (``docs/explanation/learning.md``). With
-``guard`` and ``breakout`` the safety filter and the ways out of the improved planners come beside the table,
-which is then asked on the way to temporary goals too.
+``guard`` and ``breakout`` the safety filter and the ways out of the improved planners come beside
+the table, which is then asked on the way to temporary goals too.
 """
 
 from __future__ import annotations
