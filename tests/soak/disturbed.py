@@ -230,7 +230,7 @@ class Sweep:
 
 
 def quiet_samples(ledger: Ledger, episodes: int) -> Iterator[dict[str, Any]]:
-    """Yield the samples of the last life, from where nothing was disturbed any more."""
-    for one in ledger.samples:
-        if one["life"] == ledger.lives and one["rows"] >= episodes * QUIET:
-            yield one
+    """Yield the samples of the last life that ran any, from where it was disturbed no more."""
+    quiet = [one for one in ledger.samples if one["rows"] >= episodes * QUIET]
+    last = max((one["life"] for one in quiet), default=0)
+    yield from (one for one in quiet if one["life"] == last)

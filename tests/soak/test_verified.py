@@ -104,6 +104,7 @@ def test_memory_that_grows_is_told_apart_from_ups_and_downs_and_one_step(tmp_pat
             held = 100.0 + growth * rows + (rows // 10) % 2 + (20.0 if rows > 780 else 0.0)
             told = {"life": 1, "rows": rows, "command": held, "workers": {"7": held}}
             ledger.note("sample", told)
+        ledger.note("life", 1000)  # started again when all was done: nothing is measured there
     for name in ("command", "workers"):
         assert abs(memory(flat, 1000)[name]["growth"] or 0.0) < 5.0
         assert 45.0 < (memory(grown, 1000)[name]["growth"] or 0.0) < 55.0
