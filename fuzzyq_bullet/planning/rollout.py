@@ -93,3 +93,10 @@ def _stoppable(room: Floats, motion: Motion) -> Floats:
     """
     lost = motion.acceleration * (motion.period + motion.latency)
     return np.asarray(np.sqrt(lost * lost + 2.0 * motion.acceleration * room) - lost)
+
+
+def distances_to(points: Floats, positions: Floats) -> Floats:
+    """Return the distance (m) from positions (S, C, 2) to the nearest of points (H, 2), (S, C)."""
+    x = positions[..., 0, None] - points[:, 0]
+    y = positions[..., 1, None] - points[:, 1]
+    return np.asarray(np.sqrt((x * x + y * y).min(axis=2)))

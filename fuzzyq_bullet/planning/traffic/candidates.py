@@ -13,7 +13,7 @@ import numpy as np
 
 from fuzzyq_bullet.planning.aim import Aim
 from fuzzyq_bullet.planning.base import Flags, Floats, Motion, Observation
-from fuzzyq_bullet.planning.rollout import angle_between, rollout
+from fuzzyq_bullet.planning.rollout import angle_between, distances_to, rollout
 from fuzzyq_bullet.planning.traffic.tracker import Traffic
 
 HORIZON = 2.5
@@ -125,9 +125,7 @@ def _stop_at_standing(positions: Floats, standing: Floats, radius: float) -> Flo
     """
     if not len(standing):
         return positions
-    x = positions[..., 0, None] - standing[:, 0]
-    y = positions[..., 1, None] - standing[:, 1]
-    gap = np.sqrt((x * x + y * y).min(axis=2))
+    gap = distances_to(standing, positions)
     hit = (gap < radius) & (gap < gap[0])
     last = np.where(hit.any(axis=0), np.maximum(hit.argmax(axis=0) - 1, 0), len(positions))
     at = np.minimum(np.arange(len(positions))[:, None], last)

@@ -12,6 +12,7 @@ import numpy as np
 
 from fuzzyq_bullet.planning.base import Flags, Floats, Motion, Observation
 from fuzzyq_bullet.planning.commands import TwistCommand
+from fuzzyq_bullet.planning.rollout import distances_to
 from fuzzyq_bullet.planning.traffic.passive_safety import (
     BRAKE_DELAYS,
     DT,
@@ -108,9 +109,7 @@ def _keeps_off(positions: Floats, standing: Floats, radius: float) -> Flags:
     """
     if not len(standing):
         return np.ones(positions.shape[1], dtype=np.bool_)
-    x = positions[..., 0, None] - standing[:, 0]
-    y = positions[..., 1, None] - standing[:, 1]
-    gaps = np.sqrt((x * x + y * y).min(axis=2))
+    gaps = distances_to(standing, positions)
     return np.asarray(((gaps >= radius) | (gaps >= gaps[0] - 1e-9)).all(axis=0))
 
 
