@@ -319,7 +319,7 @@ def least_distance_of_bodies(world):
     robot, client = world.robot.body, world.engine.client
     return min(
         point[8]
-        for body in (*world.obstacle_bodies, world.walls)
+        for body in (world.obstacle_body, world.walls)
         for point in world.engine.api.getClosestPoints(
             robot, body, 10.0, -1, -1, physicsClientId=client
         )

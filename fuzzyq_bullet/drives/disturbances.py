@@ -51,13 +51,12 @@ class Localiser:
     def __init__(self, position: float, heading: float, rng: np.random.Generator) -> None:
         self._rng = rng
         self._scale = np.array([position, position, heading])
-        self._errs = bool(self._scale.any())
         self._error = self._scale * rng.standard_normal(3)
         self._time = 0.0
 
     def error(self, time: float) -> PoseError:
         """Return the error at a time (s), which is not before that of the last question."""
-        if not self._errs:
+        if not self._scale.any():
             return PoseError()
         if time > self._time:
             kept = math.exp((self._time - time) / DRIFT)

@@ -29,8 +29,8 @@ class Inspection(World):
     def _build(self, obstacles: Sequence[Shape], arena: Arena) -> None:
         super()._build(obstacles, arena)
         self._rod = self._build_rod()
-        for tile in self.obstacle_bodies:
-            self._group(tile, -1, Group.OBSTACLES, Group.BODY | Group.RAYS)
+        if self.obstacle_body is not None:
+            self._group(self.obstacle_body, -1, Group.OBSTACLES, Group.BODY | Group.RAYS)
         if self.walls is not None:
             self._group(self.walls, -1, Group.WALLS, Group.BODY | Group.RAYS)
 
@@ -80,7 +80,7 @@ class Inspection(World):
         only = {} if link is None else {"linkIndexA": link}
         gaps = [
             point[8]
-            for other in (*self.obstacle_bodies, self.walls)
+            for other in (self.obstacle_body, self.walls)
             if other is not None
             for point in self._api.getClosestPoints(
                 body, other, self.FAR, physicsClientId=self.engine.client, **only

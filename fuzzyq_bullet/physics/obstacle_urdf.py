@@ -1,13 +1,12 @@
 """Obstacles and walls as URDF text: all that stand in one body, each that moves in its own.
 
 One link with many ``<collision>`` elements is the fastest static world PyBullet has: a step costs
-nearly the same at 1000 obstacles as at none. It does look at every shape of a body that is near the
-robot, in every step: more obstacles are cut into tiles, a body for each.
+nearly the same at 1000 obstacles as at none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,24 +17,9 @@ from fuzzyq_bullet.shapes import Shape
 
 OBSTACLE_HEIGHT = 0.4
 """Height of every obstacle (m): well above the robot."""
-TILE = 1000
-"""Most obstacles of one body."""
 WALL_HEIGHT = 0.25
 WALL_THICKNESS = 0.1
 _PRISMS = "prisms.obj"
-
-
-def tiles(obstacles: Sequence[Shape]) -> Iterator[Sequence[Shape]]:
-    """Yield obstacles that lie together, at most ``TILE`` at once; few of them as they come."""
-    if len(obstacles) <= TILE:
-        if obstacles:
-            yield obstacles
-        return
-    places = np.array([one.position for one in obstacles])
-    longest = np.ptp(places, axis=0).argmax()
-    order = places[:, longest].argsort(kind="stable")
-    for half in np.array_split(order, 2):
-        yield from tiles([obstacles[k] for k in half])
 
 
 def obstacles_urdf(obstacles: Sequence[Shape]) -> tuple[str, dict[str, str]]:

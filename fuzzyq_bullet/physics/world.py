@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from fuzzyq_bullet.physics.engine import TIME_STEP, Contact
 from fuzzyq_bullet.physics.movers import Mover
-from fuzzyq_bullet.physics.obstacle_urdf import mover_urdf, obstacles_urdf, tiles, walls_urdf
+from fuzzyq_bullet.physics.obstacle_urdf import mover_urdf, obstacles_urdf, walls_urdf
 from fuzzyq_bullet.physics.robot import Robot
 from fuzzyq_bullet.physics.sensor_world import Group, SensorWorld
 from fuzzyq_bullet.scenario.places import Arena
@@ -27,9 +27,8 @@ class World(SensorWorld):
         # The order of loading is part of the trajectory: ground, obstacles, walls, faces, movers,
         # robot.
         ground = self._build_ground()
-        self.obstacle_bodies = [
-            self.engine.load_text(*obstacles_urdf(tile)) for tile in tiles(obstacles)
-        ]
+        urdf = obstacles_urdf(obstacles) if obstacles else None
+        self.obstacle_body = self.engine.load_text(*urdf) if urdf else None
         self.walls = self.engine.load_text(walls_urdf(arena)) if arena.walls else None
         super()._build(obstacles, arena)
         for one in self.movers.members:
@@ -50,8 +49,8 @@ class World(SensorWorld):
             self._group(self.robot.body, -1, Group.BODY, Group.OBSTACLES | Group.WALLS)
             for link in self.robot.links:
                 self._group(self.robot.body, link, Group.WHEELS, Group.GROUND)
-        for tile in self.obstacle_bodies:
-            self._group(tile, -1, Group.OBSTACLES, Group.BODY)
+        if self.obstacle_body is not None:
+            self._group(self.obstacle_body, -1, Group.OBSTACLES, Group.BODY)
         if self.walls is not None:
             self._group(self.walls, -1, Group.WALLS, Group.BODY)
 

@@ -84,11 +84,6 @@ class Motion:
         return max(1.0, USUAL_SPEED / self.max_speed, half_turn / USUAL_HALF_TURN)
 
 
-def sees_far(reach: float, unit: float) -> bool:
-    """Return whether a range (m) is more than the paper's lines reach, 5·S_p; ``unit`` is S_p."""
-    return reach > USUAL_RANGE * unit * (1.0 + 1e-9)
-
-
 class RangeSensor:
     """What can be asked of the robot's sensor at one instant.
 
@@ -240,7 +235,7 @@ class Observation:
     @property
     def sees_far(self) -> bool:
         """Whether the robot sees farther than the paper's lines reach, 5·S_p."""
-        return sees_far(self.range, self.unit)
+        return self.range > USUAL_RANGE * self.unit * (1.0 + 1e-9)
 
     @property
     def size(self) -> float:

@@ -79,20 +79,6 @@ def test_obstacles_are_one_body_whatever_their_number(engine):
         assert world.walls is not None
 
 
-def test_more_than_a_thousand_are_cut_into_tiles_and_all_are_solid(engine):
-    grid = [cylinder(1.0 + 1.2 * (k % 50), 1.0 + 1.2 * (k // 50)) for k in range(1500)]
-    world = World(grid, Arena(size=(61.0, 37.0)), engine=engine)
-    assert len(world.obstacle_bodies) == 2
-    touched = []
-    for index in (0, 49, 724, 725, 1450, 1499):  # in the corners, and where it is cut
-        x, y = grid[index].position
-        _, contact = run_into(world, x - 0.6, y, 0.0)
-        assert contact is not None
-        assert world.touched(contact) == index
-        touched.append(contact.body)
-    assert set(touched) == set(world.obstacle_bodies)
-
-
 def test_walls_stand_on_the_edges_and_only_where_they_are_wanted(engine):
     world = World([], FIELD, engine=engine)
     for heading in (0.0, math.pi / 2, math.pi, -math.pi / 2):
