@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from fuzzyq_bullet.planning.aim import Aim, along_heading
-from fuzzyq_bullet.planning.base import Floats, Motion, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Floats, Motion, Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.rollout import angle_between
 from fuzzyq_bullet.planning.traffic.candidates import (
@@ -118,9 +118,11 @@ def must_go_on(decision: Decision, observation: Observation, traffic: Traffic) -
         return False
     # Not its reach: the robot decides again before it has driven so far.
     free = max(decision.guard - STOP_SHORT, 0.0) if decision.reach else 0.0
+    # The longest step is driven at full speed.
+    share = min(decision.step / (LONGEST_STRIDE * observation.unit), 1.0)
     pair = Candidates(
         headings=np.array([decision.heading, observation.heading]),
-        speeds=np.array([motion.max_speed, 0.0]),
+        speeds=np.array([share * motion.max_speed, 0.0]),
         lengths=np.array([free, 0.0]),
         backward=np.array([decision.backward, False]),
     )
@@ -147,7 +149,7 @@ def _choose(
         heading, length = candidates.headings[k], candidates.lengths[k]
         driven = observation.backwards() if candidates.backward[k] else observation
         speed = safe_speed(heading, length, driven, motion, traffic)
-        if speed is not None and speed > min(driven.speed, CREEP_SPEED):
+        if speed is not None and speed > min(max(driven.speed, 0.0), CREEP_SPEED):
             return int(k)
     return int((gaps.min(axis=0) + TIE_BREAK * values).argmax())
 

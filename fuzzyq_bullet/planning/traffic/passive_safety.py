@@ -155,7 +155,7 @@ def are_safe(
 
 def in_reach(observation: Observation, motion: Motion, traffic: Traffic) -> Traffic:
     """Return the part of the traffic that can touch the robot before it could have stopped."""
-    delay = motion.latency + motion.period
+    delay = motion.latency + motion.period + BRAKE_DELAYS[-1]
     time = delay + motion.max_speed / motion.acceleration + STANDSTILL
     way = motion.max_speed * delay + motion.way_to_stop(motion.max_speed)
     apart = np.hypot(*(traffic.points - observation.position).T)
