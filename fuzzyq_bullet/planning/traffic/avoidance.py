@@ -27,6 +27,7 @@ class TrafficAvoidance:
         self._updated_at = 0.0
         self._waited = 0.0  # seconds during which the robot gave way or was slowed down
         self._waits = False
+        self._goes_on = False
 
     def update(self, observation: Observation) -> None:
         """Scan all around, and track what moves."""
@@ -65,7 +66,11 @@ class TrafficAvoidance:
         if self._traffic is None:
             return decision
         limited = self._safety.limit(decision, observation, self._traffic)
-        if limited.reach < decision.reach and must_go_on(decision, observation, self._traffic):
-            limited = decision
-        self._waits = self._waits or limited.reach < decision.reach
+        slowed = limited.reach < decision.reach
+        self._goes_on = slowed and must_go_on(
+            decision, observation, self._traffic, goes_on=self._goes_on
+        )
+        if self._goes_on:
+            return decision
+        self._waits = self._waits or slowed
         return limited

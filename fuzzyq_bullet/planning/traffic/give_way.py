@@ -11,16 +11,17 @@ import math
 import numpy as np
 
 from fuzzyq_bullet.planning.aim import Aim, along_heading
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Floats, Motion, Observation
+from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Flags, Floats, Motion, Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.rollout import angle_between
 from fuzzyq_bullet.planning.traffic.candidates import (
+    DT,
     STOP_SHORT,
     Candidates,
     candidates_towards,
     predict,
 )
-from fuzzyq_bullet.planning.traffic.passive_safety import safe_speed
+from fuzzyq_bullet.planning.traffic.passive_safety import RESERVE, STANDSTILL, safe_speed
 from fuzzyq_bullet.planning.traffic.tracker import Traffic
 
 CREEP_SPEED = 0.1
@@ -105,13 +106,19 @@ class GiveWay:
         return np.asarray(progress + GAP_WEIGHT * gap - TURN_COST * turn + HYSTERESIS * same)
 
 
-def must_go_on(decision: Decision, observation: Observation, traffic: Traffic) -> bool:
-    """Return whether a decision leads clear of what moves, and braking leads into a contact.
+def must_go_on(
+    decision: Decision, observation: Observation, traffic: Traffic, *, goes_on: bool
+) -> bool:
+    """Return whether a decision keeps clear of what moves, and braking leads into a contact.
+
+    It need not keep clear for ever: it is enough if its contact comes so much later than that of
+    braking that the robot could still stop and stand before it.
 
     Args:
         decision: A decision that the safety filter has passed.
         observation: What was observed.
         traffic: What moves.
+        goes_on: Whether the robot goes on already, as the last decision said.
     """
     motion = observation.motion
     if motion is None or not traffic.tracks:
@@ -127,8 +134,18 @@ def must_go_on(decision: Decision, observation: Observation, traffic: Traffic) -
         backward=np.array([decision.backward, False]),
     )
     gaps, _ = predict(observation, motion, pair, traffic, margins=False)
-    goes_on, stands = gaps.min(axis=0).tolist()
-    return bool(goes_on > 0.0 >= stands)
+    least = np.array([0.0 if goes_on else RESERVE, 0.0])
+    # A circle that was fitted too wide may overlap the robot: what comes no nearer meets nothing.
+    meets = (gaps <= least) & (gaps < gaps[0])
+    after_going_on, after_braking = _first_times(meets)
+    needed = motion.max_speed / motion.acceleration + STANDSTILL
+    return bool(after_braking < math.inf and after_going_on - after_braking >= needed)
+
+
+def _first_times(meets: Flags) -> list[float]:
+    """Return when each of C motions first meets something (s), infinite if never; of (S, C)."""
+    times = np.where(meets.any(axis=0), meets.argmax(axis=0) * DT, math.inf)
+    return [float(time) for time in times]
 
 
 def _choose(

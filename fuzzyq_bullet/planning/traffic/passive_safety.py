@@ -37,6 +37,9 @@ RESERVE = 0.02
 """Gap that is left (m)."""
 COS_AHEAD = math.cos(math.radians(15.0))
 """An obstacle within this angle of the robot's heading is ahead: it may turn and come."""
+COS_AWAY = math.cos(math.radians(60.0))
+"""An obstacle that goes away from the robot, give or take this angle, hides from it what it is
+about to meet: it may turn at any time."""
 SPEEDS = 6
 """Number of speeds that are tried, from the greatest that the robot can reach to the least."""
 BRAKE_DELAYS = (0.0, 0.4, 0.8, 1.2)
@@ -195,14 +198,16 @@ def _gaps(positions: Floats, heading: float, observation: Observation, traffic: 
     """
     times = np.arange(len(positions)) * DT
     relative = traffic.points - observation.position
-    along = relative @ np.array([math.cos(heading), math.sin(heading)])
-    ahead = along > COS_AHEAD * np.hypot(*relative.T)
-    straight_for = np.where(ahead, 0.0, np.maximum(traffic.straight_for - EARLIER, 0.0))
+    apart = np.hypot(*relative.T)
+    ahead = relative @ np.array([math.cos(heading), math.sin(heading)]) > COS_AHEAD * apart
+    goes = np.hypot(*traffic.velocities.T)
+    away = (relative * traffic.velocities).sum(axis=1) > COS_AWAY * apart * goes
+    straight_for = np.where(ahead | away, 0.0, np.maximum(traffic.straight_for - EARLIER, 0.0))
     straight = np.minimum(times[:, None], straight_for)
     centres = traffic.points + straight[..., None] * traffic.velocities
     grown = SPEED_TOLERANCE * straight + traffic.max_speeds * (times[:, None] - straight)
-    apart = np.linalg.norm(positions[:, :, None] - centres[:, None], axis=3)
-    return np.asarray((apart - grown[:, None]).min(axis=2))
+    gaps = np.linalg.norm(positions[:, :, None] - centres[:, None], axis=3) - grown[:, None]
+    return np.asarray(gaps.min(axis=2))
 
 
 def _safe_step(decision: Decision, observation: Observation, traffic: Traffic) -> float:
