@@ -8,7 +8,8 @@ from fuzzyq_bullet.planning.aim import Aim
 from fuzzyq_bullet.planning.base import Floats, Observation
 from fuzzyq_bullet.planning.decision import Decision
 from fuzzyq_bullet.planning.escape.cost_to_go import NO_HITS
-from fuzzyq_bullet.planning.traffic.give_way import GiveWay, must_go_on
+from fuzzyq_bullet.planning.traffic.give_way import GiveWay
+from fuzzyq_bullet.planning.traffic.going_on import GoingOn
 from fuzzyq_bullet.planning.traffic.passive_safety import PassiveSafety
 from fuzzyq_bullet.planning.traffic.tracker import Tracker, Traffic
 
@@ -23,11 +24,11 @@ class TrafficAvoidance:
         self._tracker = Tracker()
         self._give_way = GiveWay()
         self._safety = PassiveSafety()
+        self._going_on = GoingOn()
         self._traffic: Traffic | None = None
         self._updated_at = 0.0
         self._waited = 0.0  # seconds during which the robot gave way or was slowed down
         self._waits = False
-        self._goes_on = False
 
     def update(self, observation: Observation) -> None:
         """Scan all around, and track what moves."""
@@ -65,12 +66,12 @@ class TrafficAvoidance:
         """
         if self._traffic is None:
             return decision
+        kept = self._going_on.kept(decision, observation, self._traffic)
+        if kept is not None:
+            return kept
         limited = self._safety.limit(decision, observation, self._traffic)
-        slowed = limited.reach < decision.reach
-        self._goes_on = slowed and must_go_on(
-            decision, observation, self._traffic, goes_on=self._goes_on
-        )
-        if self._goes_on:
-            return decision
-        self._waits = self._waits or slowed
+        if limited.reach < decision.reach:
+            if self._going_on.begins(decision, observation, self._traffic):
+                return decision
+            self._waits = True
         return limited

@@ -21,7 +21,8 @@ class Circle(NamedTuple):
     Attributes:
         centre: Its centre (m).
         radius: Its radius (m).
-        fits: Whether the points lie on it. If not, it only encloses them.
+        fits: Whether the points lie on it. If not, it is as wide as they are, and lies behind the
+            nearest of them.
     """
 
     centre: tuple[float, float]
@@ -30,7 +31,7 @@ class Circle(NamedTuple):
 
 
 def fit_circle(points: Floats, origin: Floats, tolerance: float) -> Circle:
-    """Return the circle that fits points best, or if none fits, a circle around them.
+    """Return the circle that fits points best, or if none fits, one as wide as they are.
 
     This is the algebraic least-squares fit (Kåsa 1976), which needs no first guess and is exact
     for points without noise.
@@ -40,6 +41,7 @@ def fit_circle(points: Floats, origin: Floats, tolerance: float) -> Circle:
         origin: From where it is seen (m): the centre lies behind the points.
         tolerance: How far off the circle the points may be (m).
     """
+    distances = np.linalg.norm(points - origin, axis=1)
     low, high = points.min(axis=0), points.max(axis=0)
     middle = (low + high) / 2.0
     if len(points) >= FEWEST_POINTS:
@@ -50,8 +52,11 @@ def fit_circle(points: Floats, origin: Floats, tolerance: float) -> Circle:
         radius = math.sqrt(max(0.0, c + a * a + b * b))
         centre = middle + np.array([a, b])
         off = np.abs(np.linalg.norm(points - centre, axis=1) - radius).max()
-        behind = np.linalg.norm(centre - origin) > np.linalg.norm(points - origin, axis=1).min()
+        behind = np.linalg.norm(centre - origin) > distances.min()
         if off <= tolerance and radius <= LARGEST_RADIUS and behind:
             return Circle((float(centre[0]), float(centre[1])), radius, fits=True)
-    around = float(np.linalg.norm(points - middle, axis=1).max())
-    return Circle((float(middle[0]), float(middle[1])), around, fits=False)
+    # Around the middle it would reach nearer than anything that is seen.
+    radius = float(np.linalg.norm(points - middle, axis=1).max())
+    nearest, apart = float(distances.min()), float(np.linalg.norm(middle - origin))
+    centre = origin + (middle - origin) * max(1.0, (nearest + radius) / max(apart, 1e-6))
+    return Circle((float(centre[0]), float(centre[1])), radius, fits=False)

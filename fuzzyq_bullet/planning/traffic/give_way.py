@@ -11,17 +11,15 @@ import math
 import numpy as np
 
 from fuzzyq_bullet.planning.aim import Aim, along_heading
-from fuzzyq_bullet.planning.base import LONGEST_STRIDE, Flags, Floats, Motion, Observation
-from fuzzyq_bullet.planning.decision import Decision
+from fuzzyq_bullet.planning.base import Floats, Motion, Observation
 from fuzzyq_bullet.planning.rollout import angle_between
 from fuzzyq_bullet.planning.traffic.candidates import (
-    DT,
     STOP_SHORT,
     Candidates,
     candidates_towards,
     predict,
 )
-from fuzzyq_bullet.planning.traffic.passive_safety import RESERVE, STANDSTILL, safe_speed
+from fuzzyq_bullet.planning.traffic.passive_safety import safe_speed
 from fuzzyq_bullet.planning.traffic.tracker import Traffic
 
 CREEP_SPEED = 0.1
@@ -104,48 +102,6 @@ class GiveWay:
             same = np.where((off < SAME_HEADING) & again, 1.0, 0.0)
         gap = np.minimum(gaps.min(axis=0), WIDEST_GAP)
         return np.asarray(progress + GAP_WEIGHT * gap - TURN_COST * turn + HYSTERESIS * same)
-
-
-def must_go_on(
-    decision: Decision, observation: Observation, traffic: Traffic, *, goes_on: bool
-) -> bool:
-    """Return whether a decision keeps clear of what moves, and braking leads into a contact.
-
-    It need not keep clear for ever: it is enough if its contact comes so much later than that of
-    braking that the robot could still stop and stand before it.
-
-    Args:
-        decision: A decision that the safety filter has passed.
-        observation: What was observed.
-        traffic: What moves.
-        goes_on: Whether the robot goes on already, as the last decision said.
-    """
-    motion = observation.motion
-    if motion is None or not traffic.tracks:
-        return False
-    # Not its reach: the robot decides again before it has driven so far.
-    free = max(decision.guard - STOP_SHORT, 0.0) if decision.reach else 0.0
-    # The longest step is driven at full speed.
-    share = min(decision.step / (LONGEST_STRIDE * observation.unit), 1.0)
-    pair = Candidates(
-        headings=np.array([decision.heading, observation.heading]),
-        speeds=np.array([share * motion.max_speed, 0.0]),
-        lengths=np.array([free, 0.0]),
-        backward=np.array([decision.backward, False]),
-    )
-    gaps, _ = predict(observation, motion, pair, traffic, margins=False)
-    least = np.array([0.0 if goes_on else RESERVE, 0.0])
-    # A circle that was fitted too wide may overlap the robot: what comes no nearer meets nothing.
-    meets = (gaps <= least) & (gaps < gaps[0])
-    after_going_on, after_braking = _first_times(meets)
-    needed = motion.max_speed / motion.acceleration + STANDSTILL
-    return bool(after_braking < math.inf and after_going_on - after_braking >= needed)
-
-
-def _first_times(meets: Flags) -> list[float]:
-    """Return when each of C motions first meets something (s), infinite if never; of (S, C)."""
-    times = np.where(meets.any(axis=0), meets.argmax(axis=0) * DT, math.inf)
-    return [float(time) for time in times]
 
 
 def _choose(

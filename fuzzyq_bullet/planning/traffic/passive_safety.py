@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -55,6 +56,18 @@ STEP_PARTS = 8
 """The step of the point robot is shortened by multiples of this part of it."""
 
 
+class Way(NamedTuple):
+    """A way that the robot may keep.
+
+    Attributes:
+        heading: World heading (rad).
+        backward: Whether the robot backs up.
+    """
+
+    heading: float
+    backward: bool
+
+
 class PassiveSafety:
     """Keeps the robot passively safe for one episode.
 
@@ -63,8 +76,7 @@ class PassiveSafety:
     """
 
     def __init__(self) -> None:
-        # World heading (rad), and whether the robot backs up.
-        self._way_out: tuple[float, bool] | None = None
+        self._way_out: Way | None = None
 
     def limit(self, decision: Decision, observation: Observation, traffic: Traffic) -> Decision:
         """Return the decision, limited so that the robot is passively safe.
@@ -79,17 +91,22 @@ class PassiveSafety:
             return decision._replace(step=_safe_step(decision, observation, traffic))
         speed = _speed(decision, observation, motion, traffic)
         if speed is None and self._way_out is not None:
-            step, (heading, backward) = LONGEST_STRIDE * observation.unit, self._way_out
-            out = decision._replace(heading=heading, step=step, reach=math.inf, backward=backward)
-            out = safety_filter(out, observation)
+            out = along(self._way_out, decision, observation)
             speed = _speed(out, observation, motion, traffic)
             decision = decision if speed is None else out
-        self._way_out = None if speed is None else (decision.heading, decision.backward)
+        self._way_out = None if speed is None else Way(decision.heading, decision.backward)
         if speed == math.inf:
             return decision
         delay = motion.period + motion.latency
         reach = speed * delay + motion.way_to_stop(speed) if speed else 0.0
         return decision._replace(reach=min(decision.reach, reach))
+
+
+def along(way: Way, decision: Decision, observation: Observation) -> Decision:
+    """Return a decision to take a way instead, at full speed and as far as it is free."""
+    step = LONGEST_STRIDE * observation.unit
+    taken = decision._replace(heading=way.heading, step=step, reach=math.inf, backward=way.backward)
+    return safety_filter(taken, observation)
 
 
 def _speed(
