@@ -55,8 +55,8 @@ class Result(BaseModel):
         time_s: Simulated time (s).
         path_length_m: Length of the driven path (m).
         shortest_path_m: Length of the robot's shortest path to the goal disc (m), through the discs
-            of the via points (``ground_truth.tour``); null where there is no way at all, and among
-            more than ``MOST_ROUND`` obstacles, where it is not looked for.
+            of the via points (``ground_truth.tour``); null where there is no way at all, and where
+            the obstacles have more than 1500 corners and cylinders: it is not looked for there.
         spl: Success weighted by path length, 0 to 1: shortest over driven path, 0 for a run that
             did not reach the goal; null where ``shortest_path_m`` is.
         min_clearance_m: Least distance to anything (m), negative for an overlap; null when there
