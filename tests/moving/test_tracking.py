@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import Observation, RangeSensor
+from fuzzyq_bullet.planning.traffic.circle_fit import fit_circle
 from fuzzyq_bullet.planning.traffic.tracker import Tracker
 from fuzzyq_bullet.scenario import Cylinder
 
@@ -71,6 +72,14 @@ def test_the_velocity_of_a_disc_is_told_to_within_5_cm_a_second(place, goes, spe
             assert math.dist(track.velocity, along(goes, speed)) < 0.05
     if k == 29 and own == 0.0:
         assert found or math.cos(goes - place) > 0.4  # what moves away enters hardly anything free
+
+
+@given(st.lists(st.tuples(st.floats(0.3, 1.2), angles), min_size=1, max_size=12))
+def test_the_circle_of_what_is_seen_reaches_no_nearer_than_what_is_seen(seen):
+    points = np.array([along(heading, distance) for distance, heading in seen])
+    circle = fit_circle(points, np.zeros(2), 0.01)
+    nearest = math.hypot(*circle.centre) - circle.radius
+    assert nearest >= min(distance for distance, _ in seen) - (0.02 if circle.fits else 1e-6)
 
 
 @given(angles, st.floats(0.3, 0.5))

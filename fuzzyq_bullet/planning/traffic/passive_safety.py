@@ -38,9 +38,6 @@ RESERVE = 0.02
 """Gap that is left (m)."""
 COS_AHEAD = math.cos(math.radians(15.0))
 """An obstacle within this angle of the robot's heading is ahead: it may turn and come."""
-COS_AWAY = math.cos(math.radians(60.0))
-"""An obstacle that goes away from the robot, give or take this angle, hides from it what it is
-about to meet: it may turn at any time."""
 SPEEDS = 6
 """Number of speeds that are tried, from the greatest that the robot can reach to the least."""
 BRAKE_DELAYS = (0.0, 0.4, 0.8, 1.2)
@@ -215,11 +212,11 @@ def _gaps(positions: Floats, heading: float, observation: Observation, traffic: 
     """
     times = np.arange(len(positions)) * DT
     relative = traffic.points - observation.position
-    apart = np.hypot(*relative.T)
-    ahead = relative @ np.array([math.cos(heading), math.sin(heading)]) > COS_AHEAD * apart
-    goes = np.hypot(*traffic.velocities.T)
-    away = (relative * traffic.velocities).sum(axis=1) > COS_AWAY * apart * goes
-    straight_for = np.where(ahead | away, 0.0, np.maximum(traffic.straight_for - EARLIER, 0.0))
+    along = relative @ np.array([math.cos(heading), math.sin(heading)])
+    ahead = along > COS_AHEAD * np.hypot(*relative.T)
+    # It hides what it is about to meet, and may turn at any time.
+    goes_away = (relative * traffic.velocities).sum(axis=1) > 0.0
+    straight_for = np.where(ahead | goes_away, 0.0, np.maximum(traffic.straight_for - EARLIER, 0.0))
     straight = np.minimum(times[:, None], straight_for)
     centres = traffic.points + straight[..., None] * traffic.velocities
     grown = SPEED_TOLERANCE * straight + traffic.max_speeds * (times[:, None] - straight)
