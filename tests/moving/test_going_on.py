@@ -40,6 +40,12 @@ def test_it_stops_to_go_on_when_nothing_would_run_into_it() -> None:
     assert last == BRAKES
 
 
+@pytest.mark.parametrize(("ahead", "goes_on"), [(math.inf, True), (0.7, False)])
+def test_it_does_not_go_on_into_a_contact_that_comes_soon_after(ahead: float, goes_on: bool):
+    crossing = Crossing(math.radians(90.0), 0.1, ahead=ahead)
+    assert (crossing.limit(ON).reach == ON.reach) is goes_on
+
+
 def test_a_robot_that_drives_slowly_does_not_rely_on_its_full_speed() -> None:
     slow = ON._replace(step=0.04)
     assert Crossing(math.radians(100.0), 0.06).limit(slow).reach < ON.reach

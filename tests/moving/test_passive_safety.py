@@ -21,10 +21,15 @@ ON = Decision(0.0, 0.4, reach=0.9, guard=0.95)
 
 
 class Crossing:
-    """An obstacle comes from a side (rad) straight to a robot that drives along x."""
+    """An obstacle comes from a side (rad) straight to a robot that drives along x.
 
-    def __init__(self, side: float, gap: float, speed: float = SPEED) -> None:
-        self._side, self._gap, self._speed = side, gap, speed
+    Another may come slowly towards the robot, ``ahead`` of it (m).
+    """
+
+    def __init__(
+        self, side: float, gap: float, speed: float = SPEED, ahead: float = math.inf
+    ) -> None:
+        self._side, self._gap, self._speed, self._ahead = side, gap, speed, ahead
         self._avoidance = TrafficAvoidance()
         self._tick = -12
         while self._tick < 0:
@@ -35,7 +40,8 @@ class Crossing:
         time = self._tick * PERIOD
         apart = self._gap + 0.2 + 0.25 - COMES * time
         there = apart * math.cos(self._side), apart * math.sin(self._side)
-        seen = reading(time, (self._speed * time, 0.0), [pillar(*there)])
+        other = min(self._ahead, 9.0) + 0.2 + 0.25 - 0.15 * time
+        seen = reading(time, (self._speed * time, 0.0), [pillar(*there), pillar(other, 0.0)])
         self._observation = replace(seen, speed=self._speed, motion=MOTION)
         self._avoidance.update(self._observation)
 
