@@ -6,7 +6,7 @@ import math
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from fuzzyq_bullet.video.explanation import is_clear, side_of
+from fuzzyq_bullet.video.explanation import gives_way, is_clear, side_of
 from fuzzyq_bullet.video.timeline import NO_DECISION
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ HOLD = 0.5
 class DecisionHold:
     """The decision shown at any time of a run; it depends on nothing but the time.
 
-    Each is held for a while, then gives way to the one in force. Another mode, a turn to the other
-    side, or something on a way that was clear is shown at once.
+    Each is held for a while, then the one in force takes its place. Another mode, a turn to the
+    other side, something on a way that was clear, or that the robot gives way is shown at once.
 
     Args:
         trajectory: The run.
@@ -34,6 +34,7 @@ class DecisionHold:
         modes = decisions.mode.tolist()
         sides = [side_of(trajectory, k) for k in range(len(times))]
         clear = [is_clear(decisions, k) for k in range(len(times))]
+        giving = [gives_way(trajectory, k) for k in range(len(times))]
         self._last = len(times) - 1
         self._times: list[float] = []
         self._decisions: list[int] = []
@@ -43,6 +44,7 @@ class DecisionHold:
                 modes[k] != modes[held]
                 or sides[k] * sides[held] < 0
                 or (clear[held] and not clear[k])
+                or (giving[k] and not giving[held])
             )
             since = time if at_once else max(time, due)
             if since < until:

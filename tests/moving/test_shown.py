@@ -18,6 +18,7 @@ from fuzzyq_bullet.recording.metrics import has_way
 from fuzzyq_bullet.recording.moving import headings_of, movers_csv, poses_at
 from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.video import style
+from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.explanation import reason
 from fuzzyq_bullet.video.map.map import Map
 from fuzzyq_bullet.video.movers import DrawnMovers
@@ -125,6 +126,17 @@ def test_the_sentence_says_what_comes() -> None:
     assert "A moving obstacle comes from the left: waits" in told
     assert not told[0].startswith("A moving obstacle")  # too far away to be seen
     assert not told[-1].startswith("A moving obstacle")  # it goes back
+
+
+def test_that_it_gives_way_is_shown_at_once(crossed: Trajectory) -> None:
+    decisions = crossed.decisions
+    target = decisions.target.copy()
+    target[20:] = 4.0, 4.0  # a temporary goal
+    record = replace(crossed, decisions=replace(decisions, target=target))
+    time = float(record.ticks.time[decisions.tick[20]])
+    timeline, hold = Timeline(record), DecisionHold(record)
+    assert hold.at(timeline.at(time - 0.01)) < 20
+    assert hold.at(timeline.at(time)) == 20
 
 
 def test_csv_has_a_row_for_each_tick(crossed: Trajectory) -> None:
