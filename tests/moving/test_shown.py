@@ -131,12 +131,12 @@ def test_the_sentence_says_what_comes() -> None:
 def test_that_it_gives_way_is_shown_at_once(crossed: Trajectory) -> None:
     decisions = crossed.decisions
     target = decisions.target.copy()
-    target[20:] = 4.0, 4.0  # a temporary goal
+    target[23:] = 4.0, 4.0  # a temporary goal
     record = replace(crossed, decisions=replace(decisions, target=target))
-    time = float(record.ticks.time[decisions.tick[20]])
+    time = float(record.ticks.time[decisions.tick[23]])
     timeline, hold = Timeline(record), DecisionHold(record)
-    assert hold.at(timeline.at(time - 0.01)) < 20
-    assert hold.at(timeline.at(time)) == 20
+    assert hold.at(timeline.at(time - 0.01)) < 23
+    assert hold.at(timeline.at(time)) == 23
 
 
 def test_csv_has_a_row_for_each_tick(crossed: Trajectory) -> None:
