@@ -199,13 +199,18 @@ def test_a_robot_that_turns_slowly_is_given_the_time_to_turn_round():
     )
 
 
-def test_a_centimetre_nearer_is_patience_anew_and_less_is_not():
-    for step, goes_on in ((0.012, True), (0.008, False)):
-        follower = PathFollower([(1.5, 0.0)])
-        assert follower.next(observe(Field(), time=0.0)) is not None
-        assert follower.next(observe(Field(), (step, 0.0), time=2.0)) is not None
-        last = follower.next(observe(Field(), (step, 0.0), time=PATIENCE + 0.5))
-        assert (last is not None) is goes_on
+@pytest.mark.parametrize("uncertainty", [0.0, 0.05])
+@pytest.mark.parametrize(("step", "goes_on"), [(0.012, True), (0.008, False)])
+def test_a_centimetre_nearer_than_it_can_tell_is_patience_anew(step, goes_on, uncertainty):
+    follower, step = PathFollower([(1.5, 0.0)]), step + uncertainty
+
+    def way_on(x, time):
+        told = replace(observe(Field(), (x, 0.0), time=time), uncertainty=uncertainty)
+        return follower.next(told)
+
+    assert way_on(0.0, 0.0) is not None
+    assert way_on(step, 2.0) is not None
+    assert (way_on(step, PATIENCE + 0.5) is not None) is goes_on
 
 
 def test_a_new_point_is_patience_anew():

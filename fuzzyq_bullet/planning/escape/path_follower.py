@@ -14,7 +14,7 @@ SHORTCUTS = 3
 REACHED = 0.03
 """A point as near as this is reached (m)."""
 NEARER = 0.05 * STEP_UNIT
-"""How much nearer counts as progress (m)."""
+"""How much nearer counts as progress (m), beside what the robot cannot tell for certain."""
 PATIENCE = 3.0
 """Time without progress towards the next point after which the path is given up (s); longer for a
 slow robot."""
@@ -109,7 +109,8 @@ class PathFollower:
 
     def _comes_nearer(self, length: float, observation: Observation) -> bool:
         now = observation.time
-        if length < self._closest - NEARER * observation.size:
+        progress = NEARER * observation.size + observation.uncertainty
+        if length < self._closest - progress:
             self._closest, self._since = length, now
         return now - self._since <= PATIENCE * observation.slowness
 
