@@ -63,7 +63,7 @@ def rollout(
             rate = _approach(rate, _wanted_rate(error, motion), motion.turn_acceleration * dt)
             first = time < motion.latency + motion.period - 1e-9
             aimed = (speeds[0] if first else speeds[1]) * np.maximum(np.cos(error), 0.0)
-            wanted = np.minimum(aimed, _stoppable(np.maximum(lengths - driven, 0.0), motion))
+            wanted = np.minimum(aimed, stoppable(np.maximum(lengths - driven, 0.0), motion))
             wanted = np.where(time < brakes_after - 1e-9, wanted, 0.0)
             speed = _approach(speed, wanted, motion.acceleration * dt)
         facing = facing + rate * dt
@@ -85,7 +85,7 @@ def _wanted_rate(error: Floats, motion: Motion) -> Floats:
     return np.asarray(np.copysign(np.minimum(quick, motion.max_turn_rate), error))
 
 
-def _stoppable(room: Floats, motion: Motion) -> Floats:
+def stoppable(room: Floats, motion: Motion) -> Floats:
     """Return the greatest speeds (m/s) that the robot can stop from within so much room (m).
 
     With a = ``acceleration`` and T = ``period`` + ``latency``, v·T + v²/2a = room gives

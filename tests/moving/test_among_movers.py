@@ -118,10 +118,10 @@ def test_whom_it_meets_in_a_corridor_it_gets_out_of_the_way_backward(speed):
         "goal": {"position": (7.0, 0.75)},
         "limits": {"time": 10.0},
         "obstacles": [
-            {"shape": "box", "position": (2.7, 0.75), "size": (0.3, 1.2), "motion": on},
+            {"shape": "box", "position": (3.0, 0.75), "size": (0.3, 1.2), "motion": on},
         ],
     }
-    trajectory = run(Scenario.model_validate({**walk(on, (2.7, 0.75)).model_dump(), **corridor}))
+    trajectory = run(Scenario.model_validate({**walk(on, (3.0, 0.75)).model_dump(), **corridor}))
     assert trajectory.outcome == "timeout"
     assert trajectory.ticks.speed.min() < -0.2
     told = [reason(trajectory, k) for k in range(len(trajectory.decisions.tick))]

@@ -13,7 +13,7 @@ from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import Observation, RangeSensor
 from fuzzyq_bullet.planning.traffic.circle_fit import fit_circle
 from fuzzyq_bullet.planning.traffic.tracker import Tracker
-from fuzzyq_bullet.scenario import Cylinder
+from fuzzyq_bullet.scenario import Box, Cylinder
 
 PERIOD, RANGE, WIDE = 0.05, 1.0, 0.22
 angles = st.floats(-math.pi, math.pi)
@@ -80,7 +80,8 @@ def test_a_circle_for_what_is_none_reaches_no_nearer_than_what_is_seen(place, se
     circle = fit_circle(points, np.zeros(2), 0.0)
     assume(not circle.fits)
     nearest = min(distance for distance, _ in seen)
-    assert math.hypot(*circle.centre) - circle.radius >= nearest - 1e-6
+    centre = np.add(circle.centre, circle.back)
+    assert math.hypot(*centre) - circle.radius >= nearest - 1e-6
 
 
 @given(angles, st.floats(0.3, 0.5))
@@ -137,3 +138,17 @@ def test_what_bounces_is_followed_the_other_way_within_a_quarter_of_a_second():
         traffic = tracker.update(reading(time, (0.0, 0.0), [pillar(0.8, y)]))
     [track] = traffic.tracks
     assert track.velocity == pytest.approx((0.0, 0.4), abs=0.05)
+
+
+@pytest.mark.parametrize("way", [(-0.3, 0.0), (-0.2, 0.2)])
+def test_the_velocity_of_a_box_is_told_to_within_5_cm_a_second(way):
+    # No circle fits it. The one around it changes with what is seen of the box.
+    tracker, told = Tracker(), []
+    for k in range(20):
+        time = k * PERIOD
+        at = 0.95 + way[0] * time, way[1] * (time - 0.5)
+        box = Box(shape="box", position=at, size=(0.3, 0.6))
+        traffic = tracker.update(reading(time, (0.0, 0.0), [box]))
+        told += [track.velocity for track in traffic.tracks if track.velocity and k > 8]
+    assert len(told) > 5
+    assert np.median(told, axis=0) == pytest.approx(way, abs=0.05)

@@ -68,6 +68,7 @@ class TrafficAvoidance:
             return decision
         kept = self._going_on.kept(decision, observation, self._traffic)
         if kept is not None:
+            self._waits = True
             return kept
         limited = self._safety.limit(decision, observation, self._traffic)
         if limited.reach < decision.reach:

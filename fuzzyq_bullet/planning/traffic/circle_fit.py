@@ -21,17 +21,19 @@ class Circle(NamedTuple):
     Attributes:
         centre: Its centre (m).
         radius: Its radius (m).
-        fits: Whether the points lie on it. If not, it is as wide as they are, and lies behind the
-            nearest of them.
+        fits: Whether the points lie on it. If not, it is one around them.
+        back: How much farther from the robot it must be (m), in x and y, to reach no nearer than
+            anything that is seen; 0 if it fits.
     """
 
     centre: tuple[float, float]
     radius: float
     fits: bool
+    back: tuple[float, float] = (0.0, 0.0)
 
 
 def fit_circle(points: Floats, origin: Floats, tolerance: float) -> Circle:
-    """Return the circle that fits points best, or if none fits, one as wide as they are.
+    """Return the circle that fits points best, or if none fits, one around them.
 
     This is the algebraic least-squares fit (Kåsa 1976), which needs no first guess and is exact
     for points without noise.
@@ -55,8 +57,10 @@ def fit_circle(points: Floats, origin: Floats, tolerance: float) -> Circle:
         behind = np.linalg.norm(centre - origin) > distances.min()
         if off <= tolerance and radius <= LARGEST_RADIUS and behind:
             return Circle((float(centre[0]), float(centre[1])), radius, fits=True)
-    # Around the middle it would reach nearer than anything that is seen.
     radius = float(np.linalg.norm(points - middle, axis=1).max())
-    nearest, apart = float(distances.min()), float(np.linalg.norm(middle - origin))
-    centre = origin + (middle - origin) * max(1.0, (nearest + radius) / max(apart, 1e-6))
-    return Circle((float(centre[0]), float(centre[1])), radius, fits=False)
+    apart = max(float(np.linalg.norm(middle - origin)), 1e-6)
+    nearer = float(distances.min()) + radius - apart
+    back = (middle - origin) * (nearer / apart)
+    return Circle(
+        (float(middle[0]), float(middle[1])), radius, False, (float(back[0]), float(back[1]))
+    )

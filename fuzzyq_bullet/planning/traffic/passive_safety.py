@@ -53,8 +53,8 @@ STEP_PARTS = 8
 """The step of the point robot is shortened by multiples of this part of it."""
 
 
-class Way(NamedTuple):
-    """A way that the robot may keep.
+class Course(NamedTuple):
+    """A heading that the robot may keep, ahead or backwards.
 
     Attributes:
         heading: World heading (rad).
@@ -73,7 +73,7 @@ class PassiveSafety:
     """
 
     def __init__(self) -> None:
-        self._way_out: Way | None = None
+        self._way_out: Course | None = None
 
     def limit(self, decision: Decision, observation: Observation, traffic: Traffic) -> Decision:
         """Return the decision, limited so that the robot is passively safe.
@@ -86,12 +86,12 @@ class PassiveSafety:
         motion = observation.motion
         if motion is None:
             return decision._replace(step=_safe_step(decision, observation, traffic))
-        speed = _speed(decision, observation, motion, traffic)
+        speed = safe_speed_of(decision, observation, motion, traffic)
         if speed is None and self._way_out is not None:
-            out = along(self._way_out, decision, observation)
-            speed = _speed(out, observation, motion, traffic)
+            out = keeping(self._way_out, decision, observation)
+            speed = safe_speed_of(out, observation, motion, traffic)
             decision = decision if speed is None else out
-        self._way_out = None if speed is None else Way(decision.heading, decision.backward)
+        self._way_out = None if speed is None else Course(decision.heading, decision.backward)
         if speed == math.inf:
             return decision
         delay = motion.period + motion.latency
@@ -99,14 +99,16 @@ class PassiveSafety:
         return decision._replace(reach=min(decision.reach, reach))
 
 
-def along(way: Way, decision: Decision, observation: Observation) -> Decision:
-    """Return a decision to take a way instead, at full speed and as far as it is free."""
+def keeping(course: Course, decision: Decision, observation: Observation) -> Decision:
+    """Return a decision to keep a course instead, at full speed and as far as it is free."""
     step = LONGEST_STRIDE * observation.unit
-    taken = decision._replace(heading=way.heading, step=step, reach=math.inf, backward=way.backward)
+    taken = decision._replace(
+        heading=course.heading, step=step, reach=math.inf, backward=course.backward
+    )
     return safety_filter(taken, observation)
 
 
-def _speed(
+def safe_speed_of(
     decision: Decision, observation: Observation, motion: Motion, traffic: Traffic
 ) -> float | None:
     """Return the greatest passively safe speed (m/s) of a decision; see ``safe_speed``."""
@@ -214,7 +216,7 @@ def _gaps(positions: Floats, heading: float, observation: Observation, traffic: 
     relative = traffic.points - observation.position
     along = relative @ np.array([math.cos(heading), math.sin(heading)])
     ahead = along > COS_AHEAD * np.hypot(*relative.T)
-    # It hides what it is about to meet, and may turn at any time.
+    # An obstacle that goes away hides what it is about to meet, and may turn at any time.
     goes_away = (relative * traffic.velocities).sum(axis=1) > 0.0
     straight_for = np.where(ahead | goes_away, 0.0, np.maximum(traffic.straight_for - EARLIER, 0.0))
     straight = np.minimum(times[:, None], straight_for)

@@ -55,11 +55,14 @@ class TrackHistory:
         radius: Radius of its circle (m).
         positions: Its latest positions: time (s), x and y of the centre (m).
         velocity: Its velocity (m/s); None while it is not known.
+        back: How much farther back its circle is taken to be (m), in x and y; see ``Circle``. It
+            changes with the robot's place, so it is no part of the positions.
     """
 
     radius: float
     positions: deque[tuple[float, float, float]] = field(default_factory=deque)
     velocity: tuple[float, float] | None = None
+    back: tuple[float, float] = (0.0, 0.0)
 
     @property
     def last_seen(self) -> float:
@@ -75,7 +78,9 @@ class TrackHistory:
     def state(self, standing: Floats, time: float) -> Track:
         """Return its state at a time (s), among standing points (m) of shape (H, 2)."""
         straight_for = self.straight_for(standing, time)
-        return Track(self.predict(time), self.radius, self.velocity, straight_for)
+        x, y = self.predict(time)
+        centre = x + self.back[0], y + self.back[1]
+        return Track(centre, self.radius, self.velocity, straight_for)
 
     def max_speed(self, limit: float) -> float:
         """Return how fast (m/s) it may be at most: a limit if its velocity is not known."""
@@ -111,7 +116,7 @@ class TrackHistory:
         turned = self.velocity and math.dist(self.predict(time), circle.centre) > tolerance
         if turned or abs(circle.radius - self.radius) > RADIUS_CHANGE:
             self.positions.clear()  # the velocity is fitted anew
-        self.radius = circle.radius
+        self.radius, self.back = circle.radius, circle.back
         self.positions.append((time, *circle.centre))
         while time - self.positions[0][0] > WINDOW:
             self.positions.popleft()
