@@ -45,6 +45,11 @@ class Crossing:
         self._observation = replace(seen, speed=self._speed, motion=MOTION)
         self._avoidance.update(self._observation)
 
+    @property
+    def clock(self) -> float:
+        """Time that has passed for the escape (s)."""
+        return self._avoidance.without_waiting(self._observation).time
+
     def limit(self, decision: Decision) -> Decision:
         """Return what becomes of a decision now, and look again."""
         limited = self._avoidance.limit(decision, self._observation)

@@ -150,5 +150,7 @@ def test_the_velocity_of_a_box_is_told_to_within_5_cm_a_second(way):
         box = Box(shape="box", position=at, size=(0.3, 0.6))
         traffic = tracker.update(reading(time, (0.0, 0.0), [box]))
         told += [track.velocity for track in traffic.tracks if track.velocity and k > 8]
+        for track in traffic.tracks:
+            assert math.hypot(*track.centre) - track.radius > at[0] - 0.15 - 0.05
     assert len(told) > 5
     assert np.median(told, axis=0) == pytest.approx(way, abs=0.05)

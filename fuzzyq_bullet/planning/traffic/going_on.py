@@ -98,9 +98,9 @@ def _must_go_on(
         return False
     # It may go as far as is free: the robot decides again before it has driven its reach. But its
     # reach limits its speed, and so does its step, of which the longest is driven at full speed.
-    free = max(decision.guard - STOP_SHORT, 0.0) if decision.reach else 0.0
+    free = max(decision.guard - STOP_SHORT, 0.0)
     share = min(decision.step / (LONGEST_STRIDE * observation.unit), 1.0)
-    speed = min(share * motion.max_speed, _within(decision.reach, motion))
+    speed = min(share * motion.max_speed, float(stoppable(np.array(decision.reach), motion)))
     pair = Candidates(
         headings=np.array([decision.heading, observation.heading]),
         speeds=np.array([speed, 0.0]),
@@ -113,11 +113,6 @@ def _must_go_on(
         return False
     to_stop = motion.latency + motion.period + motion.max_speed / motion.acceleration
     return after_going_on - after_braking >= to_stop + STANDSTILL
-
-
-def _within(reach: float, motion: Motion) -> float:
-    """Return the greatest speed (m/s) from which the robot can stop within its reach (m)."""
-    return float(stoppable(np.array(reach), motion))
 
 
 def _first_contacts(gaps: Floats, least: list[float]) -> list[float]:
