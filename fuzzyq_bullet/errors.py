@@ -30,6 +30,10 @@ class SensorError(UserError):
     """A sensor model raised, or told what cannot be a length; says which one."""
 
 
+class MotionError(UserError):
+    """A motion of an obstacle raised, or told what is no pose; says which one, what and when."""
+
+
 class MachineError(UserError):
     """The machine failed, as with a full disk: nothing is wrong with what was asked.
 

@@ -14,7 +14,7 @@ from typing import Literal
 from pydantic import Field
 
 from fuzzyq_bullet.quantities import Angle, Length
-from fuzzyq_bullet.shapes import Motion, Pose, register_motion
+from fuzzyq_bullet.shapes import Motion, Moving, Pose, register_motion
 
 
 @register_motion
@@ -28,3 +28,10 @@ class Swing(Motion):
     def pose(self, time: float) -> Pose:
         """Return the pose at a time (s)."""
         return Pose(0.0, 0.0, self.angle * math.sin(math.tau * time / self.period))
+
+    def top_speed(self, obstacle: Moving) -> float:
+        """Return the speed (m/s) of its corners as it swings through the middle.
+
+        It may be left out: then the motion is looked at for a minute, 20 times a second.
+        """
+        return obstacle.extent() * self.angle * math.tau / self.period

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.physics.engine import Engine
-from fuzzyq_bullet.scenario.movers import courses_of, fastest, moves
+from fuzzyq_bullet.scenario.courses import courses_of, fastest, told_top_speed
+from fuzzyq_bullet.scenario.movers import moves
 from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Shape
 from fuzzyq_bullet.shapes.motion import MAX_MOTION_SPEED, STILL, Course, placed, seen_from
@@ -57,16 +58,17 @@ class Mover:
         self.solid: int | None = None
         self.faces = -1
         self._field = Field.of([shape])
-        self._course: Course = STILL
-        self._halted = 0.0
+        self.begin(STILL)
 
     def begin(self, course: Course) -> None:
         """Put it at the beginning of its way."""
         self._course, self._halted = course, 0.0
+        self._latest = (-1.0, (0.0, 0.0, 0.0))  # clock and pose: all ask for the same several times
 
-    def way(self) -> tuple[Course, float]:
-        """Return its way, and the radius (m) of a circle about its centre that holds all of it."""
-        return self._course, self.extent
+    def top_speed(self, time: float) -> float:
+        """Return the greatest speed (m/s) of any part of it, until a time (s) of the run."""
+        told = told_top_speed(self.shape)
+        return fastest(self._course, self.extent, time) if told is None else told
 
     def halt(self, time: float) -> None:
         """Let its clock stand for a time (s)."""
@@ -107,9 +109,11 @@ class Mover:
         return False
 
     def _at(self, clock: float) -> tuple[float, float, float]:
-        moved = self._course.pose(max(0.0, clock))
-        x, y = self.shape.position
-        return x + moved[0], y + moved[1], moved[2]
+        clock = max(0.0, clock)
+        if clock != self._latest[0]:
+            moved, (x, y) = self._course.pose(clock), self.shape.position
+            self._latest = (clock, (x + moved[0], y + moved[1], moved[2]))
+        return self._latest[1]
 
 
 class Movers:
@@ -153,7 +157,7 @@ class Movers:
 
     def fastest(self, time: float) -> float:
         """Return how fast (m/s) any of them is at most, until a time (s); 0 if none moves."""
-        return max((fastest(*one.way(), time) for one in self.members), default=0.0)
+        return max((one.top_speed(time) for one in self.members), default=0.0)
 
     def poses(self) -> Floats:
         """Return where they are, shape (M, 3): x, y (m) of the centre, and the turn (rad)."""

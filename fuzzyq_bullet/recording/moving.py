@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.columns import FAR, Column, Columns, csv_of
 from fuzzyq_bullet.geometry import Field
-from fuzzyq_bullet.scenario.movers import courses_of
+from fuzzyq_bullet.scenario.courses import courses_of
 from fuzzyq_bullet.shapes.motion import placed, seen_from
 
 if TYPE_CHECKING:

@@ -7,12 +7,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fuzzyq_bullet.errors import MotionError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.reading.problems import Loc
+from fuzzyq_bullet.scenario.courses import course_of, fastest, told_top_speed
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
-from fuzzyq_bullet.scenario.movers import courses_of, fastest, standing_field
+from fuzzyq_bullet.scenario.movers import standing_field
 from fuzzyq_bullet.shapes import Pose, Shape
 from fuzzyq_bullet.shapes.motion import MAX_MOTION_SPEED, placed, seen_from
 
@@ -23,7 +25,8 @@ def motion_conflicts(scenario: Scenario) -> list[tuple[Loc, str]]:
     """Return what is wrong with the motions of a scenario: places and messages.
 
     Conflicts are: an obstacle that begins inside one that stands, a wall or the robot; one that is
-    faster than 3 m/s; whatever a motion itself finds.
+    faster than 3 m/s, or than its motion tells; a motion that raises, or whose poses are none;
+    whatever a motion itself finds.
     """
     moving = scenario.movers
     if not moving:
@@ -31,20 +34,32 @@ def motion_conflicts(scenario: Scenario) -> list[tuple[Loc, str]]:
     field = standing_field(scenario.obstacles, scenario.arena)
     found: list[tuple[Loc, str]] = []
     for i in moving:
-        item = scenario.obstacles[i]
-        for key, why in item.motion.conflicts(item, field):
-            found.append((("obstacles", i, "motion", key), why))
-    told = {loc[1] for loc, _ in found}
-    courses = courses_of(scenario.obstacles, scenario.arena, scenario.seed)
-    for i, course in courses.items():
-        if i in told:
+        motion = ("obstacles", i, "motion")
+        conflicts = scenario.obstacles[i].motion.conflicts(scenario.obstacles[i], field)
+        found += [((*motion, key), why) for key, why in conflicts]
+        if conflicts:
             continue
-        shape, first = scenario.obstacles[i], course.pose(0.0)
-        found += [(("obstacles", i, "motion"), why) for why in _begins(scenario, shape, first)]
-        if (fast := fastest(course, 0.0, scenario.limits.time)) > MAX_MOTION_SPEED + _ROUNDING:
-            why = f"moves at {fast:.2f} m/s; at most {MAX_MOTION_SPEED:g} m/s"
-            found.append((("obstacles", i, "motion"), why))
+        try:
+            found += [(motion, why) for why in _conflicts(scenario, i, field)]
+        except MotionError as error:
+            found.append((motion, str(error)))
     return found
+
+
+def _conflicts(scenario: Scenario, index: int, field: Field) -> Iterator[str]:
+    """Yield what is wrong with the course of one obstacle.
+
+    Raises:
+        MotionError: If it has none that can be looked at.
+    """
+    shape, limit = scenario.obstacles[index], scenario.limits.time
+    course = course_of(index, shape, field, scenario.seed)
+    yield from _begins(scenario, shape, course.pose(0.0))
+    if (fast := fastest(course, 0.0, limit)) > MAX_MOTION_SPEED + _ROUNDING:
+        yield f"moves at {fast:.2f} m/s; at most {MAX_MOTION_SPEED:g} m/s"
+    told, seen = told_top_speed(shape), fastest(course, shape.extent(), limit)
+    if told is not None and seen > told + _ROUNDING:
+        yield f"moves at {seen:.2f} m/s, but its top_speed is {told:.2f} m/s"
 
 
 def _begins(scenario: Scenario, shape: Shape, pose: Pose) -> Iterator[str]:

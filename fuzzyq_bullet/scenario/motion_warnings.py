@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from fuzzyq_bullet.geometry import Field, Floats
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.reading.problems import Loc
+from fuzzyq_bullet.scenario.courses import courses_of
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
-from fuzzyq_bullet.scenario.movers import courses_of
 from fuzzyq_bullet.shapes import Shape
 from fuzzyq_bullet.shapes.motion import Course, placed, seen_from
 

@@ -102,6 +102,14 @@ class Motion(Model, ABC):
         """
         return self
 
+    def top_speed(self, obstacle: Moving) -> float | None:
+        """Return the greatest speed (m/s) of any part of the obstacle; None if it has to be seen.
+
+        The robot is told how fast what moves may come. If no motion tells it, its course is looked
+        at before each run, for a minute.
+        """
+        return None
+
     def moved(self, x: float, y: float, turn: float) -> Self:
         """Return the motion of the obstacle turned about the origin (rad) and then moved (m).
 
@@ -139,7 +147,8 @@ def register_motion(motion: _M) -> _M:
                 return Pose(self.speed * time, 0.0, 0.0)
 
     An obstacle then has ``motion: {kind: slide, speed: 0.1}``. A motion that depends on what stands
-    there, or on chance, has ``course`` instead of ``pose``.
+    there, or on chance, has ``course`` instead of ``pose``. One that knows how fast it is at most
+    also has ``top_speed``.
 
     Raises:
         ValueError: If the name is taken.

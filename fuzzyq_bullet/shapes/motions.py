@@ -107,6 +107,10 @@ class Patrol(Motion):
             go(point)
         return _Legs(legs, time - begin if time - begin > _SAME else None, begin)
 
+    def top_speed(self, obstacle: Moving) -> float:
+        """Return its speed between the points."""
+        return self.speed
+
     def moved(self, x: float, y: float, turn: float) -> Self:
         """Return it with its points turned about the origin and moved."""
         points = tuple(turned_about_origin(one, x, y, turn, DECIMALS) for one in self.points)
@@ -125,6 +129,11 @@ class Circle(Motion):
     def course(self, obstacle: Moving, surroundings: Surroundings) -> Course:
         """Return the way round the centre."""
         return _Round(self, obstacle.position)
+
+    def top_speed(self, obstacle: Moving) -> float:
+        """Return the speed of the part that is farthest from the centre of the circle."""
+        radius = max(math.dist(self.centre, obstacle.position), _SAME)
+        return self.speed * (1.0 + obstacle.extent() / radius)
 
     def moved(self, x: float, y: float, turn: float) -> Self:
         """Return it with its centre turned about the origin and moved."""
@@ -161,6 +170,10 @@ class Wander(Motion):
     def course(self, obstacle: Moving, surroundings: Surroundings) -> Course:
         """Return a way that the random numbers of the surroundings draw."""
         return _Wandering(self.speed, obstacle, surroundings)
+
+    def top_speed(self, obstacle: Moving) -> float:
+        """Return its speed wherever it goes."""
+        return self.speed
 
     def conflicts(self, obstacle: Moving, standing: Standing) -> list[tuple[str, str]]:
         """Return whether the circle around it touches something from which it would bounce."""

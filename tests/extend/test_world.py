@@ -122,6 +122,48 @@ def test_a_motion_is_known_and_its_keys_are_checked(fuzzyq: Call, room: Path) ->
         assert line.startswith("error: ") is (code == 2)
 
 
+BROKEN = """
+@register_motion
+class Broken{number}(Motion):
+    kind: Literal["broken-{number}"]
+    def pose(self, time):
+        return {pose}
+    def top_speed(self, obstacle):
+        return {speed}
+"""
+
+
+def test_a_motion_that_is_wrong_is_one_line(inside: Call, room: Path) -> None:
+    need, say = "must return Pose(x, y, yaw), three finite numbers", "must return a speed (m/s) or"
+    cases = [
+        ("1", None, f"pose(0) {need}, not 1"),
+        ("(0.0, 0.0)", None, f"pose(0) {need}, not [0.0, 0.0]"),
+        ("Pose(float('nan'), 0, 0)", None, f"pose(0) {need}, not [nan, 0, 0]"),
+        ("Pose(0, 0, 0) if time < 2 else None", None, f"pose(2) {need}, not nothing"),
+        ("1 / 0", None, "stopped by ZeroDivisionError: division by zero, in pose(0)"),
+        ("Pose(0, 0, 0)", "'fast'", f"top_speed {say} None, not 'fast'"),
+        ("Pose(0, 0, 0)", "float('nan')", f"top_speed {say} None, not nan"),
+        ("Pose(0, 0, 0)", "-1.0", f"top_speed {say} None, not -1.0"),
+        ("Pose(0, 0, 0)", "1 / 0", "stopped by ZeroDivisionError: division by zero, in top_speed"),
+        ("Pose(0.2 * time, 0, 0)", "0.1", "moves at 0.20 m/s, but its top_speed is 0.10 m/s"),
+        ("Pose(0.2 * time, 0, 0)", "0.2", None),
+    ]
+    plugin = "from typing import Literal\nfrom fuzzyq_bullet.shapes import *\n"
+    room.write_text(f"{ROOM}obstacles:\n")
+    with room.open("a") as file:
+        for number, (pose, speed, _) in enumerate(cases):
+            plugin += BROKEN.format(number=number, pose=pose, speed=speed)
+            where = f"shape: box, position: [2.4, 1.4], size: [0.3, {0.1 + number / 100}]"
+            file.write(f"  - {{{where}, motion: {{kind: broken-{number}}}}}\n")
+    room.with_name("broken.py").write_text(plugin)
+    with pytest.raises(UserError) as told:
+        inside("validate", room, "--plugin", room.with_name("broken.py"))
+    lines = dict(line.split(".motion: ") for line in told.value.problems)
+    for number, (_, _, words) in enumerate(cases):
+        line = lines.get(f"{room}:{6 + number}: obstacles[{number}]")
+        assert line in (words, f"motion broken-{number}: {words}")
+
+
 def test_a_motion_that_is_not_there_is_named_by_a_record(filmed: Path, tmp_path: Path) -> None:
     arrays = dict(np.load(filmed / "short.npz"))
     meta = json.loads(str(arrays["meta"]))

@@ -15,9 +15,9 @@ from fuzzyq_bullet.planning import Decision
 from fuzzyq_bullet.recording.metrics import collision_text, result_of
 from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
+from fuzzyq_bullet.scenario.courses import courses_of, fastest, told_top_speed
 from fuzzyq_bullet.scenario.expectations import unmet_expectations
 from fuzzyq_bullet.scenario.files import dump_scenario, load_scenario, parse_scenario
-from fuzzyq_bullet.scenario.movers import courses_of
 from fuzzyq_bullet.shapes.motion import seen_from
 
 ROOM = """\
@@ -103,6 +103,27 @@ def test_a_wanderer_bounces_and_depends_on_seed_and_number_alone() -> None:
     assert place(alone, 30.0) == tuple(ways[0][300])
     other = world.model_copy(update={"seed": 1})
     assert place(other, 30.0) != place(world, 30.0)
+
+
+@pytest.mark.parametrize(
+    ("motion", "speed"),
+    [
+        ("kind: patrol, points: [[3, 1], [3, 2], [4, 2]], speed: 0.5, pause: 1.0", 0.5),
+        ("kind: circle, centre: [3.5, 1.0], speed: 0.2", 0.2 * (0.5 + 0.25) / 0.5),
+        ("kind: wander, speed: 0.3", 0.3),
+        ("kind: trace, poses: [[0, 3, 1, 0], [1, 3, 1.4, 0], [2, 3, 1.5, 0]]", 0.4),
+    ],
+)
+def test_the_greatest_speed_is_known_or_seen(motion: str, speed: float) -> None:
+    world = room(disc(3.0, 1.0, motion))
+    [shape] = world.obstacles
+    course = courses_of(world.obstacles, world.arena, world.seed)[0]
+    seen = fastest(course, shape.extent(), world.limits.time)
+    assert seen == pytest.approx(speed, rel=1e-3)
+    told = told_top_speed(shape)
+    assert told == (None if "trace" in motion else pytest.approx(speed))
+    with world_of(world) as built:
+        assert Episode(built, world).observe().closing_speed == (seen if told is None else told)
 
 
 def test_a_trace_is_read_from_its_file_and_kept(tmp_path: Path) -> None:
