@@ -79,14 +79,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("planner", choices=SPACES)
     parser.add_argument("--settings", type=int, default=20, help="the defaults and drawn ones")
+    parser.add_argument(
+        "--given", type=json.loads, action="append", help="this setting, as JSON; nothing is drawn"
+    )
     parser.add_argument("--fields", type=int, default=24)
     parser.add_argument("--time", type=float, default=120.0, help="longest run (s, simulated)")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--out", type=Path, required=True, help="file of all episodes, kept")
     told = parser.parse_args()
 
-    rng, space, tried = random.Random(SWEEP), SPACES[told.planner], [dict[str, Any]()]
-    for _ in range(100 * told.settings):
+    rng, space, tried = random.Random(SWEEP), SPACES[told.planner], told.given or [{}]
+    for _ in range(0 if told.given else 100 * told.settings):
         drawn = {key: rng.choice(values) for key, values in space.items()}
         if drawn not in tried and len(tried) < told.settings:
             tried.append(drawn)

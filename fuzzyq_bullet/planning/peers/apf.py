@@ -21,7 +21,8 @@ heading, its size up to 1 the part of the greatest speed. Left out: Khatib's dam
 which the velocity controller of the wheels has. Known to remain: passages between obstacles that
 repel each other's side, and oscillation in narrow corridors (Koren and Borenstein 1991).
 
-Tuning (docs/results/peers.md): the best of 8 settings on 12 training fields.
+Tuning (docs/results/peers.md): of 20 settings on 24 training fields two are best; on 96 more they
+reach as many goals in as much time. These are the defaults of before.
 """
 
 from __future__ import annotations

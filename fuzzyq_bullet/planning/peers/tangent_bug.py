@@ -19,7 +19,7 @@ by 5 cm, or the robot would leave at once by noise of a few millimetres. The nod
 before stays unless another is shorter by 10 cm. Along a boundary a ray turns until enough is free
 (``wall_following``), in place of the paper's path along local tangents.
 
-Tuning (docs/results/peers.md): ``enough`` is the only parameter, the best of 5 values on 12
+Tuning (docs/results/peers.md): ``enough`` is the only parameter, the best of 5 values on 24
 training fields.
 """
 

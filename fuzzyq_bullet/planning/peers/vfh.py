@@ -23,8 +23,8 @@ is blocked it creeps to the least dense. Cells behind the goal do not count, bec
 it would close the way into it. The paper's grid is filled by sonar over a longer time; here 120
 rays fill it at once.
 
-Tuning (docs/results/peers.md): the cost is the paper's. The rest is the best of 10 settings of
-a random search on 12 training fields: 9 reached within 90 s, in 41.0 s on average.
+Tuning (docs/results/peers.md): the cost is the paper's. The rest is the best of 20 settings
+on 24 training fields: 20 goals reached within 90 s, in 35.2 s on average.
 """
 
 from __future__ import annotations
