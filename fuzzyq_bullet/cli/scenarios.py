@@ -91,7 +91,17 @@ def import_map(
     number: Annotated[
         int, typer.Option(min=1, help="Which task of a .scen file, counted from 1.")
     ] = 1,
-    robot: Annotated[str | None, typer.Option(metavar="MODEL", help="The robot's model.")] = None,
+    robot: Annotated[
+        str | None, typer.Option(metavar="MODEL", help="The robot's model: a name, or a URDF file.")
+    ] = None,
+    left_wheel: Annotated[
+        str | None,
+        typer.Option(metavar="JOINT", help="The left wheel's joint in that URDF."),
+    ] = None,
+    right_wheel: Annotated[
+        str | None,
+        typer.Option(metavar="JOINT", help="The right wheel's joint in that URDF."),
+    ] = None,
     plugin: PluginOption = None,
     replace: Annotated[
         bool, typer.Option("--replace", help="Replace a file that is there already.")
@@ -100,8 +110,8 @@ def import_map(
     """Make a scenario file from a map, and print its path.
 
     Reads ROS maps, Gazebo worlds, pictures, MovingAI maps and tasks, and worlds of ir-sim
-    (docs/how-to/maps.md). What the scenario cannot hold is named on stderr and at the head of the
-    file.
+    (docs/how-to/maps.md). What the scenario cannot hold, or has otherwise, is named on stderr and
+    at the head of the file.
 
     Raises:
         UserError: If there is no importer for the map, it is wrong, or the file cannot be written.
@@ -112,12 +122,14 @@ def import_map(
     from fuzzyq_bullet.outputs import plugin_inputs
     from fuzzyq_bullet.scenario import dump_scenario
     from fuzzyq_bullet.scenario.importers import ImportOptions, import_map, options_of
+    from fuzzyq_bullet.scenario.robot import URDF
 
     target = out or Path(f"{file.stem}.yaml")
     if out is None and target.resolve() == file.resolve():  # a map that is YAML, and lies here
         target = target.with_suffix(".scenario.yaml")
     writable_files(target.parent, [target.name])
-    refuse_inputs([target], [file, *plugin_inputs(plugin or [])])
+    urdf = [Path(robot)] if robot is not None and robot.endswith(URDF) else []
+    refuse_inputs([target], [file, *urdf, *plugin_inputs(plugin or [])])
     if target.exists() and not replace:
         raise UserError(f"{target}: is there already; --replace replaces it, --out names another")
     options: ImportOptions = options_of(
@@ -128,12 +140,15 @@ def import_map(
         unknown=unknown,
         number=number,
         robot=robot,
+        left_wheel=left_wheel,
+        right_wheel=right_wheel,
     )
     imported = import_map(file, options)
-    notes = [f"left out: {printable(line)}" for line in imported.left_out]
+    notes = [printable(line) for line in imported.notes()]
     head = [f"Imported from {printable(file.name)}.", *notes]
     lines = "".join(f"# {line}\n" for line in head) if notes else ""
-    write_text(target, lines + dump_scenario(imported.scenario, defaults=False))
+    text = dump_scenario(imported.scenario, defaults=False, folder=target.parent)
+    write_text(target, lines + text)
     for note in notes:
         say(note)
     typer.echo(target)

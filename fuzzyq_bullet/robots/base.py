@@ -22,6 +22,8 @@ Positive: TypeAlias = Annotated[Number, Field(gt=0.0, le=1000.0)]
 
 RANGE_UNITS = 5.0
 """Range of the detection lines, in units of the robot's radius: 5·S_p (Section 3.1)."""
+TALLEST = 0.4
+"""Greatest height of a robot (m): that of the obstacles."""
 _CORNERS = 48
 """Corners of a disc's outline."""
 
@@ -61,7 +63,7 @@ class RobotModel(Model):
     offset: Annotated[Number, Field(ge=-1.0, le=1.0)] = 0.0
     corners: tuple[tuple[Number, Number], ...] = ()
     radius: Radius = 0.2
-    height: Annotated[Number, Field(gt=GROUND_CLEARANCE, le=0.4)] = 0.15
+    height: Annotated[Number, Field(gt=GROUND_CLEARANCE, le=TALLEST)] = 0.15
     track: Positive = 0.28
     wheel_radius: Positive = 0.05
     mass: Positive = 5.0

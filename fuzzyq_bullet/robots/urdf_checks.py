@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyq_bullet.reading.xml_tree import Element
-from fuzzyq_bullet.robots.base import RobotModel
+from fuzzyq_bullet.robots.base import TALLEST, RobotModel
 from fuzzyq_bullet.robots.urdf_file import Reader, read_urdf
 from fuzzyq_bullet.robots.urdf_parts import Link, moved, read_link, transform
 
 _NEAR = 0.002
 """How exactly wheels must lie opposite each other, and on the ground (m)."""
-_TALLEST = 0.4
 _TORQUE = 4.0
 """Torque of a wheel's motor for each kilogram and metre of the wheel's radius: 8 m/s² by two."""
 
@@ -136,7 +135,7 @@ def _axles(
         if len(names) != 1:
             what = "no joint" if not names else f"{len(names)} joints"
             listed = ", ".join(list(joints)[:8]) or "none"
-            why = f"{what} for the {side} wheel; name it: robot: {{{side}_wheel: JOINT}}"
+            why = f"{what} for the {side} wheel; name it: {side}_wheel: JOINT"
             raise reader.error(root, f"{why}; joints: {listed}")
         found += names
     if found[0] == found[1]:
@@ -235,8 +234,8 @@ def _check_stance(
     if at > 2.5 * _NEAR:
         raise reader.error(root, "stands on its two wheels alone; give it a caster down to z = 0")
     top = max(float(z.max()) for z in heights.values())
-    if top > _TALLEST:
-        raise reader.error(root, f"is {top:.3g} m tall; obstacles are {_TALLEST:g} m high")
+    if top > TALLEST:
+        raise reader.error(root, f"is {top:.3g} m tall; obstacles are {TALLEST:g} m high")
 
 
 def _hull(points: NDArray[np.float64]) -> NDArray[np.float64]:

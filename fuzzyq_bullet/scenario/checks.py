@@ -7,6 +7,7 @@ its test, for obstacles from any source.
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -29,17 +30,18 @@ Conflict: TypeAlias = tuple[Loc, str]
 def find_conflicts(scenario: Scenario) -> list[Conflict]:
     """Return what stands in the way of running the scenario: places and messages, none if well.
 
-    Conflicts are: a planner that needs wheels in the kinematic drive; start or goal outside the
-    arena; the robot's disc at the start, or at the centre of the goal or of a via point, touching a
-    wall or an obstacle; a start within the first via point, or within the goal if there is none (a
-    run of no steps, with no shortest path to measure it by); a via point around the centre of the
-    one before it; an obstacle wholly outside the walls; obstacles to be drawn that are too large
-    for the arena or too many; a motion that begins inside something, or is too fast; a sensor that
-    sees less far than the longest step of the controller. Obstacles may overlap each other and poke
-    through walls.
+    Conflicts are: a planner that needs wheels in the kinematic drive; a robot taller than the
+    headroom of the arena; start or goal outside the arena; the robot's disc at the start, or at the
+    centre of the goal or of a via point, touching a wall or an obstacle; a start within the first
+    via point, or within the goal if there is none (a run of no steps, with no shortest path to
+    measure it by); a via point around the centre of the one before it; an obstacle wholly outside
+    the walls; obstacles to be drawn that are too large for the arena or too many; a motion that
+    begins inside something, or is too fast; a sensor that sees less far than the longest step of
+    the controller. Obstacles may overlap each other and poke through walls.
     """
     return [
         *_drive(scenario),
+        *_headroom(scenario),
         *_places(scenario),
         *_range(scenario),
         *_obstacles(scenario),
@@ -68,6 +70,18 @@ def _drive(scenario: Scenario) -> list[Conflict]:
     if scenario.drive == "wheels" or not planner.needs_wheels:
         return []
     return [(("drive",), f"the planner {planner.name} needs wheels, not {scenario.drive}")]
+
+
+def _headroom(scenario: Scenario) -> list[Conflict]:
+    headroom, height = scenario.arena.headroom, scenario.robot.spec.height
+    if headroom is None or height <= headroom + TOUCH:
+        return []
+    robot = Path(scenario.robot.model).name
+    why = (
+        f"the robot {robot} is {height:g} m tall, and the obstacles leave out what it could touch "
+        f"above {headroom:g} m; import the map again with --robot {robot}"
+    )
+    return [(("arena", "headroom"), why)]
 
 
 def _places(scenario: Scenario) -> list[Conflict]:

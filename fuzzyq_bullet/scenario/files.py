@@ -30,7 +30,7 @@ from fuzzyq_bullet.scenario.fields import refuse_other_field
 from fuzzyq_bullet.scenario.layouts import realise
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import MAX_WORDED, problems_of
-from fuzzyq_bullet.scenario.robot import Robot, with_robot_in
+from fuzzyq_bullet.scenario.robot import Robot, with_robot_from, with_robot_in
 from fuzzyq_bullet.scenario.sources import (
     Source,
     bundled_paths,
@@ -238,13 +238,15 @@ def bundled_scenarios() -> dict[str, str]:
     return {name: load_scenario(path).description for name, path in bundled_paths().items()}
 
 
-def dump_scenario(scenario: Scenario, *, defaults: bool = True) -> str:
+def dump_scenario(scenario: Scenario, *, defaults: bool = True, folder: Path | None = None) -> str:
     """Return a scenario as YAML text that ``parse_scenario`` reads back as its equal.
 
     Args:
         scenario: The scenario.
         defaults: Whether every value is written, defaults too, so that the file means the same in a
             version whose defaults differ. Without them it is a file for people to read and change.
+        folder: Folder of the file that the text is for: the path of a robot's URDF begins there.
+            Without one it is as the scenario has it.
     """
     data = scenario.model_dump(mode="json", exclude_defaults=not defaults)
     if not defaults and "robot" in data:
@@ -253,6 +255,7 @@ def dump_scenario(scenario: Scenario, *, defaults: bool = True) -> str:
         usual = Robot.model_validate({"model": told.model, **joints}).model_dump(mode="json")
         changed = {key: v for key, v in data["robot"].items() if v != usual[key] or joints.get(key)}
         data["robot"] = {"model": told.model, **changed}
+    data = with_robot_from(data, folder)
     lines: list[str] = []
     for key, value in data.items():
         if key == "obstacles" and value:

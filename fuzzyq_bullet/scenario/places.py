@@ -38,13 +38,20 @@ class Arena(Model):
     size: tuple[Length, Length] = Field(default=(10.0, 10.0), description="Width and depth (m).")
     walls: Flag = Field(default=True, description="Whether walls stand on its four edges.")
     origin: Point = Field(default=(0.0, 0.0), description="Its lower left corner (m).")
+    headroom: Length | None = Field(
+        default=None,
+        description="Up to this height (m) the obstacles are all that a robot can touch; a taller "
+        "robot is refused. Default: they are so for every robot.",
+    )
 
     @model_serializer(mode="wrap")
-    def _without_usual_origin(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out an origin at (0, 0): fields known by their hash stay the same."""
+    def _without_usual_keys(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out an origin at (0, 0) and no headroom: the hash of a field stays the same."""
         told: dict[str, Any] = handler(self)
         if self.origin == (0.0, 0.0):
             told.pop("origin", None)
+        if self.headroom is None:
+            told.pop("headroom", None)
         return told
 
     @property

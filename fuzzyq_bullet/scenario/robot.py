@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -130,13 +131,37 @@ def with_robot_in(data: dict[str, Any], folder: Path | None) -> dict[str, Any]:
         data: A scenario as its file says.
         folder: Folder of that file, in which a relative path begins; without one it stays so.
     """
+    name = _urdf_in(data)
+    if folder is None or name is None:
+        return data
+    return {**data, "robot": {**data["robot"], "model": str((folder / name).absolute())}}
+
+
+def with_robot_from(data: dict[str, Any], folder: Path | None) -> dict[str, Any]:
+    """Return the data of a scenario with the path of its robot's URDF as seen from a folder.
+
+    On another drive of Windows it stays absolute.
+
+    Args:
+        data: A scenario.
+        folder: Folder in which the path begins; without one it stays as it is.
+    """
+    name = _urdf_in(data)
+    if folder is None or name is None:
+        return data
+    urdf = Path(name)
+    try:  # of true folders: '..' behind a link leads elsewhere
+        seen = Path(os.path.relpath(urdf.parent.resolve(), folder.resolve())) / urdf.name
+    except ValueError:
+        seen = urdf
+    return {**data, "robot": {**data["robot"], "model": seen.as_posix()}}
+
+
+def _urdf_in(data: dict[str, Any]) -> str | None:
+    """Return the path of the robot's URDF in the data of a scenario; None if it has none."""
     robot = data.get("robot")
-    if folder is None or not isinstance(robot, dict):
-        return data
-    name = robot.get("model")
-    if not isinstance(name, str) or not name.endswith(URDF):
-        return data
-    return {**data, "robot": {**robot, "model": str((folder / name).absolute())}}
+    name = robot.get("model") if isinstance(robot, dict) else None
+    return name if isinstance(name, str) and name.endswith(URDF) else None
 
 
 def _refuse(key: str, value: Any, kind: Any, message: Any, **context: Any) -> NoReturn:

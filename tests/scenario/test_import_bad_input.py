@@ -250,12 +250,42 @@ def test_worlds_of_ir_sim(tmp_path: Path, text: str, said: str) -> None:
         ({"robot": "mouse"}, "--robot: no robot 'mouse'"),
         ({"resolution": 0.0}, "--resolution: 0 m cannot be"),
         ({"crop": "90,90,99,99"}, "--crop: leaves nothing of"),
-        ({"start": "50,50"}, "start.position: (50, 50) is outside the arena"),
+        ({"robot": "mouse.urdf"}, "--robot: mouse.urdf: cannot be read"),
+        ({"left_wheel": "a"}, "--left-wheel: is for a model from a URDF file; fuzzyq needs none"),
+        (
+            {"start": "50,50"},
+            "--start: (50, 50) is outside the map, x 0 to 4 m, y 0 to 4 m; there is room at "
+            "--start 3.77,3.77",
+        ),
+        ({"goal": "3.9,2"}, "--goal: (3.9, 2) is 0.1 m from the edge of the map; the robot needs"),
+        ({"crop": "0,0,1.5,1.5"}, "--goal: (2, 2) is outside --crop, x 0 to 1.5 m, y 0 to 1.5 m"),
+        ({"start": "5000,1"}, "--start: 5000 is out of bounds; allowed: -1000 to 1000"),
+        ({"goal": "1.1,1"}, "--start: is within the goal already: 0.1 m from its centre"),
     ],
 )
 def test_options(tmp_path: Path, options: dict[str, str | float], said: str) -> None:
     Image.fromarray(np.full((40, 40), 255, dtype=np.uint8)).save(tmp_path / "a.png")
     assert said in line_of(tmp_path / "a.png", **{"resolution": 0.1, **options})
+
+
+def test_start_and_goal_inside_something_are_told_with_what_it_is_and_where_there_is_room() -> None:
+    with pytest.raises(UserError) as raised:
+        import_map(MAPS / "irsim.yaml", options_of(start="5,5", goal="6.1,2"))
+    start, goal = raised.value.problems
+    what = "--start: (5, 5) is inside an obstacle, the cylinder at (5.00, 5.00); there is room at "
+    assert start.startswith(what)
+    assert goal.startswith("--goal: (6.1, 2) is inside an obstacle, the box at (6.00, 2.00); ")
+    better = [line.split()[-1] for line in (start, goal)]
+    import_map(MAPS / "irsim.yaml", options_of(start=better[0], goal=better[1]))
+
+
+def test_a_start_of_the_map_itself_is_named_with_the_map(tmp_path: Path) -> None:
+    path = tmp_path / "w.yaml"
+    path.write_text((MAPS / "irsim.yaml").read_text().replace("[1, 1, 0]", "[5, 5, 0]"))
+    with pytest.raises(UserError) as raised:
+        import_map(path)
+    (line,) = raised.value.problems
+    assert line.startswith(f"{path}: start.position: (5, 5) is inside an obstacle, the cylinder")
 
 
 def test_importers_share_a_suffix_only_if_they_can_tell_their_files(tmp_path: Path) -> None:

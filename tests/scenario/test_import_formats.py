@@ -62,9 +62,11 @@ def test_a_house_of_gazebo_is_read_with_what_stands_in_it() -> None:
         "what is above the robot, 0.15 m high: walls/outer/ceiling, kitchen_table/top/board, "
         "desk/top/board",
         "what lies on the ground or below: walls/inner/doorstep",
-        "models that can be pushed in Gazebo: they stand still here: lamp, ball",
-        "meshes: each part is its convex outline at the robot's height: column/link/stone",
         "includes that do not lie beside the file: model://sofa",
+    )
+    assert found.changed == (
+        "models that can be pushed in Gazebo stand still here: lamp, ball",
+        "parts of meshes are their convex outlines at the robot's height: column/link/stone",
     )
 
 
@@ -125,7 +127,7 @@ def test_poses_may_be_relative_to_frames_in_degrees_or_quaternions(tmp_path: Pat
 
 def test_what_a_world_has_thin_is_grown_and_named(tmp_path: Path) -> None:
     found = import_map(world(tmp_path, "<box><size>1 0.005 1</size></box>"), APART)
-    assert found.left_out == ("thinner than 0.02 m: grown to that: m/l/c",)
+    assert found.changed == ("what is thinner than 0.02 m is grown to that: m/l/c",)
     assert found.scenario.obstacles[0].thickness() == pytest.approx(0.02)
 
 
@@ -153,8 +155,8 @@ def test_a_task_of_movingai_names_its_map_start_and_goal() -> None:
     field = Field.of(scenario.obstacles)
     assert field.clearance([(2.75, 3.75)])[0] < 0.0  # column 5, row 2 from the top: @
     assert field.clearance([(2.75, 3.25)])[0] > 0.0  # row 3: the gap in the wall
-    assert "1 cells of swamp (S): taken as free" in found.left_out
-    assert "2 cells of water (W): taken as blocked" in found.left_out
+    assert "1 cells of swamp (S): taken as free" in found.changed
+    assert "2 cells of water (W): taken as blocked" in found.changed
     with pytest.raises(UserError, match=r"--number: .* has the tasks 1 to 2, not 3"):
         import_map(MAPS / "cave.map.scen", options_of(number=3))
 
@@ -201,10 +203,10 @@ def test_a_map_becomes_a_file_that_says_what_it_left_out_and_is_driven(
     assert "left out: line 17 obstacle[4].distribution: drawn by chance" in said.stderr
     head = Path("w.yaml").read_text().splitlines()
     assert head[0] == "# Imported from irsim.yaml."
-    assert (
-        head[4]
-        == "# left out: line 17 obstacle[4].distribution: drawn by chance, so not in the file"
-    )
+    assert head[3:5] == [
+        "# left out: line 17 obstacle[4].distribution: drawn by chance, so not in the file",
+        "# changed: line 15 obstacle[3].shape.vertices: lines become 0.02 m thick",
+    ]
     assert load_scenario("w.yaml").goal.position == (2.2, 1.0)
     inside("run", "w.yaml", "--no-video")
     assert Path("out/irsim.npz").exists()

@@ -68,7 +68,7 @@ def test_every_cell_of_a_ros_map_is_as_it_was_and_no_edge_has_moved(
 def test_a_turned_ros_map_keeps_its_coordinates_and_is_closed_beyond_its_edge() -> None:
     asked = {"start": "-1.18,5.81", "goal": "0.9,2.63"}
     blocked = import_map(MAPS / "lab.yaml", options_of(**asked))
-    assert blocked.left_out == ("28 unknown cells of 1200: taken as blocked (--unknown)",)
+    assert blocked.changed == ("28 unknown cells of 1200: taken as blocked (--unknown)",)
     field = Field.of(blocked.scenario.obstacles)
     assert blocked.scenario.arena.bounds.left == pytest.approx(-2.0 - 4.5 * math.sin(0.4))
     assert blocked.scenario.arena.bounds.bottom == 1.0
@@ -107,7 +107,7 @@ def test_specks_are_grown_and_named(tmp_path: Path) -> None:
     Image.fromarray(grid).save(tmp_path / "a.png")
     asked = options_of(resolution=0.005, start="0.4,0.4", goal="1.2,0.5")
     found = import_map(tmp_path / "a.png", asked)
-    assert found.left_out == ("1 specks thinner than 0.02 m: grown to that",)
+    assert found.changed == ("1 specks thinner than 0.02 m: grown to that",)
     assert covered(found.scenario)[0] == pytest.approx(0.02**2)
 
 

@@ -11,14 +11,19 @@ import numpy as np
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.quantities import MAX_OBSTACLES, MIN_RADIUS
-from fuzzyq_bullet.scenario.importers.foreign import ForeignMap, ImportOptions, Obstacle, too_many
+from fuzzyq_bullet.scenario.importers.foreign import (
+    FAR,
+    ForeignMap,
+    ImportOptions,
+    Obstacle,
+    too_many,
+)
+from fuzzyq_bullet.scenario.importers.refusals import no_places, refuse_places
 from fuzzyq_bullet.scenario.importers.room import Room
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.places import Bounds
 from fuzzyq_bullet.shapes.outlines import LEAST_AREA
 
-_LARGEST = 1000.0
-"""Greatest coordinate and side of an arena (m), as ``quantities`` allows them."""
 _NANO = 9
 """Decimals of a metre to which outlines of maps are rounded: no edge moves by more than 1 nm."""
 _MARGIN = 1.0
@@ -31,8 +36,8 @@ def scenario_of(path: Path, found: ForeignMap, options: ImportOptions) -> Scenar
     """Return the scenario of a foreign map.
 
     Raises:
-        UserError: If it has too many obstacles, is too large, or nobody says where to start and to
-            go.
+        UserError: If it has too many obstacles, is too large, nobody says where to start and to
+            go, or the robot cannot be there.
         ValidationError: If an obstacle is none.
     """
     bounds = found.bounds
@@ -54,17 +59,19 @@ def scenario_of(path: Path, found: ForeignMap, options: ImportOptions) -> Scenar
             "origin": (left, bottom),
             "size": (round(right - left, _NANO), round(top - bottom, _NANO)),
             "walls": found.walls,
+            "headroom": None if found.headroom is None else round(found.headroom, _NANO),
         },
         "obstacles": obstacles,
-        "robot": {} if options.robot is None else {"model": options.robot},
+        "robot": options.robot_keys(),
     }
     anywhere = (left, bottom)
     data["start"] = {"position": start or anywhere, "heading": heading}
     data["goal"] = {"position": goal or anywhere}
     scenario = Scenario.model_validate(data)
     room = Room(scenario)
+    refuse_places(path, scenario, options, (start, goal))
     if start is None or goal is None:
-        raise _no_places(path, room, start, goal)
+        raise no_places(path, room, start, goal)
     seconds = 3 * room.way(start, goal) / scenario.robot.max_speed
     time = float(math.ceil(min(max(_USUAL_TIME, seconds), _LONGEST_TIME)))
     limits = scenario.limits.model_copy(update={"time": time})
@@ -80,11 +87,11 @@ def _around(bounds: Bounds, *places: tuple[float, float] | None) -> Bounds:
     return Bounds(left, bottom, right, top)
 
 
-def asked_for(scenario: Scenario, options: ImportOptions) -> Scenario:
+def asked_for(path: Path, scenario: Scenario, options: ImportOptions) -> Scenario:
     """Return a scenario with the start, the goal, the part and the robot that are asked for.
 
     Raises:
-        UserError: If the part lies outside it.
+        UserError: If the part lies outside it, or the robot cannot be at a place.
         ValidationError: If any of them cannot be.
     """
     data = scenario.model_dump(mode="python")
@@ -93,11 +100,9 @@ def asked_for(scenario: Scenario, options: ImportOptions) -> Scenario:
     if options.goal is not None:
         data["goal"] = {**data["goal"], "position": options.goal}
     if options.robot is not None:
-        data["robot"] = {"model": options.robot}
+        data["robot"] = options.robot_keys()
     if options.crop is not None:
-        left, bottom, right, top = _cropped(
-            Path(scenario.name), scenario.arena.bounds, options.crop
-        )
+        left, bottom, right, top = _cropped(path, scenario.arena.bounds, options.crop)
         part = Bounds(left, bottom, right, top)
         data["arena"] = {
             **data["arena"],
@@ -105,7 +110,11 @@ def asked_for(scenario: Scenario, options: ImportOptions) -> Scenario:
             "size": (right - left, top - bottom),
         }
         data["obstacles"] = [p for one in data["obstacles"] for p in cropped(one, part)]
-    return scenario if options == ImportOptions() else Scenario.model_validate(data)
+    if options == ImportOptions():
+        return scenario
+    made = Scenario.model_validate(data)
+    refuse_places(path, made, options, (made.start.position, made.goal.position))
+    return made
 
 
 def rounded(one: Obstacle) -> Obstacle:
@@ -177,32 +186,8 @@ def _refuse_large(path: Path, bounds: Bounds, count: int) -> None:
     if count > MAX_OBSTACLES:
         raise UserError(too_many(path, count))
     width, depth = bounds.right - bounds.left, bounds.top - bounds.bottom
-    if max(width, depth, *map(abs, bounds)) > _LARGEST:
+    if max(width, depth, *map(abs, bounds)) > FAR:
         raise UserError(
             f"{path}: the map has {bounds}; coordinates and sides of an arena are at most "
-            f"{_LARGEST:g} m: take a part with --crop X0,Y0,X1,Y1"
+            f"{FAR:g} m: take a part with --crop X0,Y0,X1,Y1"
         )
-
-
-def _no_places(
-    path: Path, room: Room, start: tuple[float, float] | None, goal: tuple[float, float] | None
-) -> UserError:
-    lacking = " and ".join(
-        name for name, given in (("start", start), ("goal", goal)) if given is None
-    )
-    options = " ".join(f"--{name} X,Y" for name in lacking.split(" and "))
-    places = room.apart(start or goal)
-    if places is None:
-        return UserError(
-            f"{path}: has no {lacking}; give {options}, but nowhere is there room for two "
-            f"places that the robot, {room.radius:g} m in radius, can go between"
-        )
-    (x0, y0), (x1, y1), way = places
-    if start is None and goal is None:
-        example = f"--start {x0:g},{y0:g} --goal {x1:g},{y1:g}"
-    else:
-        example = f"--{lacking} {x1:g},{y1:g}"
-    return UserError(
-        f"{path}: has no {lacking}; give {options}. There is room for example with {example} "
-        f"({way:.3g} m to drive)"
-    )

@@ -169,7 +169,7 @@ def grid_map(
         found.obstacles.append(one)
         specks += grown
     if specks:
-        found.left_out.append(f"{specks} specks thinner than {THIN:g} m: grown to that")
+        found.changed.append(f"{specks} specks thinner than {THIN:g} m: grown to that")
     if border and sin:
         found.obstacles += _beyond(frame, bounds)
     return found

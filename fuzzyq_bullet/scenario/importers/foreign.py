@@ -7,17 +7,23 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, cast, get_args
 
+from pydantic import ValidationError
+
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.quantities import MAX_OBSTACLES, MIN_RADIUS
 from fuzzyq_bullet.reading.untrusted import number as number_of
-from fuzzyq_bullet.robots import FUZZYQ, RobotModel, no_robot, robot_model, robot_names
+from fuzzyq_bullet.robots import RobotModel
 from fuzzyq_bullet.scenario.places import Bounds
+from fuzzyq_bullet.scenario.problems import problems_of
+from fuzzyq_bullet.scenario.robot import URDF, Robot
 from fuzzyq_bullet.wording import not_one_of, shorten
 
 Unknown: TypeAlias = Literal["blocked", "free"]
 Obstacle: TypeAlias = "dict[str, Any]"
 """An obstacle as a scenario file has it: ``{"shape": "box", "position": (x, y), ...}``."""
 
+FAR = 1000.0
+"""Greatest coordinate and side of an arena (m), as ``quantities`` allows them."""
 THIN = 0.02
 """Whatever is thinner than this (m) is grown to it: the physics could step over it."""
 
@@ -34,7 +40,9 @@ class ImportOptions:
         crop: The part of the map that is kept (m).
         unknown: What cells are that nobody has seen.
         number: The row of a file of tasks, counted from 1.
-        robot: Name of the robot's model.
+        robot: The robot's model: a name, or a URDF file.
+        left_wheel: Joint of the left wheel in that URDF; by default it is found by its name.
+        right_wheel: Likewise of the right wheel.
     """
 
     resolution: float | None = None
@@ -45,16 +53,33 @@ class ImportOptions:
     unknown: Unknown = "blocked"
     number: int = 1
     robot: str | None = None
+    left_wheel: str | None = None
+    right_wheel: str | None = None
+
+    def robot_keys(self) -> dict[str, str]:
+        """Return what a scenario says of the robot that is asked for; a URDF's path is absolute."""
+        model = self.robot
+        if model is not None and model.endswith(URDF):
+            model = str(Path(model).absolute())
+        keys = {"model": model, "left_wheel": self.left_wheel, "right_wheel": self.right_wheel}
+        return {key: value for key, value in keys.items() if value is not None}
 
     def robot_model(self) -> RobotModel:
         """Return the robot that is asked for, or the default one.
 
         Raises:
-            UserError: If there is none of that name.
+            UserError: If there is none of that name, or its URDF is wrong; it names the option.
         """
-        if self.robot is not None and self.robot not in robot_names():
-            raise UserError(f"--robot: {no_robot(self.robot)}")
-        return FUZZYQ if self.robot is None else robot_model(self.robot)
+        keys = self.robot_keys()
+        if self.robot is not None:
+            keys["model"] = self.robot  # messages show it as it was given
+        try:
+            return Robot.model_validate(keys).spec
+        except ValidationError as error:
+            options = {"left_wheel": "--left-wheel", "right_wheel": "--right-wheel"}
+            problems = problems_of(error, keys)
+            lines = (f"{options.get(str(p.loc[-1]), '--robot')}: {p.message}" for p in problems)
+            raise UserError(*lines) from error
 
 
 def options_of(
@@ -66,6 +91,8 @@ def options_of(
     unknown: str = "blocked",
     number: int = 1,
     robot: str | None = None,
+    left_wheel: str | None = None,
+    right_wheel: str | None = None,
 ) -> ImportOptions:
     """Return the options that texts of a command line stand for: ``start="1,2.5"``.
 
@@ -74,8 +101,8 @@ def options_of(
     """
     if unknown not in get_args(Unknown):
         raise UserError(f"--unknown: {not_one_of('answer', unknown, get_args(Unknown))}")
-    x, y, *heading = _numbers("--start", start, "X,Y or X,Y,HEADING", (2, 3)) or (None, None)
-    end = _numbers("--goal", goal, "X,Y", (2,))
+    x, y, *heading = _numbers("--start", start, "X,Y or X,Y,HEADING", (2, 3), FAR) or (None, None)
+    end = _numbers("--goal", goal, "X,Y", (2,), FAR)
     part = _numbers("--crop", crop, "X0,Y0,X1,Y1", (4,))
     if part and (part[0] >= part[2] or part[1] >= part[3]):
         raise UserError(f"--crop: {crop}: X0 must be less than X1, and Y0 less than Y1")
@@ -88,18 +115,20 @@ def options_of(
         unknown=cast("Unknown", unknown),
         number=number,
         robot=robot,
+        left_wheel=left_wheel,
+        right_wheel=right_wheel,
     )
 
 
 def _numbers(
-    option: str, text: str | None, form: str, counts: tuple[int, ...]
+    option: str, text: str | None, form: str, counts: tuple[int, ...], most: float = 1e6
 ) -> list[float] | None:
     if text is None:
         return None
     words = text.split(",")
     if len(words) not in counts:
         raise UserError(f"{option}: expected {form}, got {shorten(text)}")
-    return [number_of(word, option, least=-1e6, most=1e6) for word in words]
+    return [number_of(word, option, least=-most, most=most) for word in words]
 
 
 @dataclass
@@ -113,7 +142,10 @@ class ForeignMap:
         start: Where its robot starts (m), if it says so.
         heading: Where that robot faces (rad).
         goal: Where that robot is to go (m).
-        left_out: What the scenario has not, or has otherwise: a line each, with the reason.
+        headroom: Up to which height (m) the obstacles are all that a robot can touch; None if
+            they are so for every robot, or the map knows no heights.
+        left_out: What the scenario has not: a line each, with the reason.
+        changed: What the scenario has otherwise, a line each.
     """
 
     bounds: Bounds
@@ -122,7 +154,9 @@ class ForeignMap:
     start: tuple[float, float] | None = None
     heading: float | None = None
     goal: tuple[float, float] | None = None
+    headroom: float | None = None
     left_out: list[str] = field(default_factory=list)
+    changed: list[str] = field(default_factory=list)
 
 
 def beside(folder: Path, name: str, where: str) -> Path:

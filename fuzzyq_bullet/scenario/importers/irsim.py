@@ -73,7 +73,7 @@ def _obstacles(found: ForeignMap, one: Mapping) -> None:
         found.left_out.append(f"line {one.at('distribution')}: drawn by chance, so not in the file")
         return
     if any(key in one for key in ("behavior", "velocity", "goal")):
-        found.left_out.append(f"line {one.at('state')}: may move there, and stands still here")
+        found.changed.append(f"line {one.at('state')}: may move there, and stands still here")
     states = _states(one)
     shapes = one.items("shape") if "shape" in one else []
     if not shapes:
@@ -83,7 +83,7 @@ def _obstacles(found: ForeignMap, one: Mapping) -> None:
         for obstacle, note in _placed(shape, x, y, yaw):
             found.obstacles.append(obstacle)
             if note:
-                found.left_out.append(note)
+                found.changed.append(note)
 
 
 def _states(one: Mapping) -> list[tuple[float, float, float]]:

@@ -84,9 +84,9 @@ def _map(path: Path, options: ImportOptions, letters: Letters) -> ForeignMap:
         count = int(np.count_nonzero(letters == ord(letter)))
         if count:
             as_what = "blocked" if letter in _BLOCKED else "free"
-            found.left_out.append(f"{count} cells of {kind} ({letter}): taken as {as_what}")
+            found.changed.append(f"{count} cells of {kind} ({letter}): taken as {as_what}")
     if options.resolution is None:
-        found.left_out.append("cells have no size in the file: 1 m each (--resolution)")
+        found.changed.append("cells have no size in the file: 1 m each (--resolution)")
     return found
 
 

@@ -11,9 +11,9 @@ from pydantic import ValidationError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.reading.problems import key_path
-from fuzzyq_bullet.scenario.checks import check
 from fuzzyq_bullet.scenario.importers.building import asked_for, scenario_of
 from fuzzyq_bullet.scenario.importers.foreign import ForeignMap, ImportOptions
+from fuzzyq_bullet.scenario.importers.refusals import refuse_conflicts
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.problems import problems_of
 from fuzzyq_bullet.wording import error_in_words, not_one_of
@@ -27,11 +27,18 @@ class Imported(NamedTuple):
 
     Attributes:
         scenario: The scenario, checked that it can be run.
-        left_out: What it has not, or has otherwise, a line each.
+        left_out: What of the map it has not, a line each.
+        changed: What of the map it has otherwise, a line each.
     """
 
     scenario: Scenario
-    left_out: tuple[str, ...]
+    left_out: tuple[str, ...] = ()
+    changed: tuple[str, ...] = ()
+
+    def notes(self) -> list[str]:
+        """Return what the scenario has not, and what it has otherwise, in words."""
+        left_out = [f"left out: {line}" for line in self.left_out]
+        return [*left_out, *(f"changed: {line}" for line in self.changed)]
 
 
 class _Entry(NamedTuple):
@@ -106,9 +113,10 @@ def import_map(path: Path, options: ImportOptions | None = None) -> Imported:
     try:
         made = _call(_importer_of(path), path, options)
         if isinstance(made, ForeignMap):
-            scenario, left_out = scenario_of(path, made, options), tuple(made.left_out)
+            scenario = scenario_of(path, made, options)
+            imported = Imported(scenario, tuple(made.left_out), tuple(made.changed))
         elif isinstance(made, Scenario):
-            scenario, left_out = asked_for(made, options), ()
+            imported = Imported(asked_for(path, made, options))
         else:
             kinds = "neither Scenario nor ForeignMap"
             raise TypeError(f"the importer returned a {type(made).__name__}, {kinds}")
@@ -119,8 +127,8 @@ def import_map(path: Path, options: ImportOptions | None = None) -> Imported:
         raise UserError(*(f"{path}: {key_path(p.loc)}: {p.message}" for p in problems)) from error
     except Exception as error:  # whatever a user's importer raises
         raise UserError(f"{path}: cannot be imported: {error_in_words(error)}") from error
-    check(scenario)
-    return Imported(scenario, left_out)
+    refuse_conflicts(path, imported.scenario, options)
+    return imported
 
 
 def _importer_of(path: Path) -> Importer:

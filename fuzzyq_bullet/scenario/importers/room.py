@@ -95,6 +95,10 @@ class Room:
         y = self._bounds.bottom + (row + 0.5) * self._step
         return round(x, 2), round(y, 2)
 
+    def nearest(self, point: Point) -> Point | None:
+        """Return the free place (m) that is nearest to a point; None if there is none."""
+        return self._point(self._cell(point)) if self._free.any() else None
+
     def way(self, start: Point, goal: Point) -> float:
         """Return about how far it is (m); 0 if the drawing is too coarse to show a way."""
         if not self._free.any():

@@ -65,7 +65,7 @@ def ros_map(path: Path, options: ImportOptions) -> ForeignMap:
     )
     count = int(np.count_nonzero(unknown))
     if count:
-        found.left_out.append(
+        found.changed.append(
             f"{count} unknown cells of {unknown.size}: taken as {options.unknown} (--unknown)"
         )
     return found

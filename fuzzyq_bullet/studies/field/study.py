@@ -84,7 +84,8 @@ class AgainstField(Study):
             yield Stage("field", self._fields(told), planners)
             return
         found = worlds_in(self._asked(self.worlds))
-        notes = [f"left out in {count} worlds: {what}" for what, count in found.left_out.items()]
+        told_of = ((*what.partition(": "), count) for what, count in found.notes.items())
+        notes = [f"{word} in {count} worlds: {what}" for word, _, what, count in told_of]
         yield Stage(WORLDS, self._worlds(told, found), planners, tuple(notes))
 
     def _fields(self, planners: Mapping[str, Any]) -> FieldPlan:

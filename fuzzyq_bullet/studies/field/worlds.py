@@ -53,13 +53,13 @@ class WorldFolder:
         worlds: Its worlds by name, in the order of their files.
         contents: The same worlds in full, as JSON.
         problems: A line for every mistake in a file that could not be read.
-        left_out: Number of worlds from which the import left out each kind of thing.
+        notes: Number of worlds of which the import left out, or changed, each kind of thing.
     """
 
     worlds: dict[str, World] = field(default_factory=dict)
     contents: dict[str, str] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
-    left_out: dict[str, int] = field(default_factory=dict)
+    notes: dict[str, int] = field(default_factory=dict)
 
 
 def worlds_in(asked: WorldOptions) -> WorldFolder:
@@ -84,9 +84,9 @@ def worlds_in(asked: WorldOptions) -> WorldFolder:
             continue
         world = _equipped(imported.scenario, asked, radius)
         files[name] = path
-        for line in imported.left_out:
+        for line in imported.notes():
             what = line.rpartition(": ")[0]
-            found.left_out[what] = found.left_out.get(what, 0) + 1
+            found.notes[what] = found.notes.get(what, 0) + 1
         text = world.model_dump_json(exclude=_UNUSED)
         digest = hashlib.sha256(text.encode()).hexdigest()
         found.worlds[name] = World(sha256=digest, seed=world.seed, goal_radius=world.goal.radius)

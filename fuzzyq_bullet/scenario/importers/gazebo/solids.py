@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzyq_bullet.robots.base import TALLEST
 from fuzzyq_bullet.scenario.importers.foreign import THIN, Obstacle, rectangle
 from fuzzyq_bullet.scenario.importers.gazebo.poses import Matrix
 
@@ -17,13 +18,37 @@ Floats: TypeAlias = NDArray[np.float64]
 FLAT = 0.01
 """What is no higher than this (m) lies on the ground, and the robot drives over it."""
 _LEVEL = 1e-9
+_SAME = 1e-6
+"""Outlines that differ by no more than this (m) are one."""
 _SIDES = 32
 """Corners of the polygon around a round outline that is no circle."""
 _MOST_CORNERS = 100
 
 
 class NotHere(Exception):  # noqa: N818
-    """The robot cannot touch it; the text says why."""
+    """The robot cannot touch it; the text says why.
+
+    Attributes:
+        bottom: How high above the ground it begins (m), if it is above the robot.
+    """
+
+    def __init__(self, why: str, bottom: float = math.inf) -> None:
+        super().__init__(why)
+        self.bottom = bottom
+
+
+class Solid(NamedTuple):
+    """What of a solid the robot could touch.
+
+    Attributes:
+        obstacle: Its outline.
+        grown: Whether that was grown because it was thin.
+        spreads: Whether a taller robot could touch more of it.
+    """
+
+    obstacle: Obstacle
+    grown: bool = False
+    spreads: bool = False
 
 
 @dataclass(frozen=True)
@@ -47,11 +72,11 @@ class Band:
         if top <= self.low:
             raise NotHere("lies on the ground or below")
         if bottom >= self.high:
-            raise NotHere(f"is above the robot, {self.high:g} m high")
+            raise NotHere(f"is above the robot, {self.high:g} m high", bottom)
 
 
-def box(size: Floats, pose: Matrix, band: Band) -> tuple[Obstacle, bool]:
-    """Return a box as an obstacle, and whether it was grown because it was thin.
+def box(size: Floats, pose: Matrix, band: Band) -> Solid:
+    """Return a box as an obstacle.
 
     Raises:
         NotHere: If the robot cannot touch it.
@@ -62,11 +87,11 @@ def box(size: Floats, pose: Matrix, band: Band) -> tuple[Obstacle, bool]:
         return hull(corners, pose=None, band=band)
     band.refuse(corners[:, 2].min(), corners[:, 2].max())
     yaw = math.atan2(pose[1, 0], pose[0, 0])
-    return rectangle(_middle(pose), (float(size[0]), float(size[1])), yaw)
+    return Solid(*rectangle(_middle(pose), (float(size[0]), float(size[1])), yaw))
 
 
-def cylinder(radius: float, length: float, pose: Matrix, band: Band) -> tuple[Obstacle, bool]:
-    """Return a cylinder as an obstacle, and whether it was grown.
+def cylinder(radius: float, length: float, pose: Matrix, band: Band) -> Solid:
+    """Return a cylinder as an obstacle.
 
     Raises:
         NotHere: If the robot cannot touch it.
@@ -82,10 +107,8 @@ def cylinder(radius: float, length: float, pose: Matrix, band: Band) -> tuple[Ob
     return _circle(_middle(pose), radius)
 
 
-def ellipsoid(
-    radii: Floats, pose: Matrix, band: Band, stretch: float = 0.0
-) -> tuple[Obstacle, bool]:
-    """Return an ellipsoid as an obstacle, and whether it was grown; a ball as its exact circle.
+def ellipsoid(radii: Floats, pose: Matrix, band: Band, stretch: float = 0.0) -> Solid:
+    """Return an ellipsoid as an obstacle; a ball as its exact circle.
 
     Args:
         radii: Shape (3,): half its axes (m).
@@ -100,7 +123,8 @@ def ellipsoid(
         radius, z = float(radii[0]), float(pose[2, 3])
         band.refuse(z - radius, z + radius)
         off = z - min(max(z, band.low), band.high)
-        return _circle(_middle(pose), math.sqrt(radius * radius - off * off))
+        found = _circle(_middle(pose), math.sqrt(radius * radius - off * off))
+        return found._replace(spreads=z > band.high)
     up = np.linspace(-math.pi / 2, math.pi / 2, _SIDES + 1)
     around = np.arange(_SIDES) * math.tau / _SIDES
     a, b = map(np.ravel, np.meshgrid(up, around))
@@ -111,7 +135,7 @@ def ellipsoid(
     return hull(points, pose, band)
 
 
-def prism(points: Floats, height: float, pose: Matrix, band: Band) -> Obstacle:
+def prism(points: Floats, height: float, pose: Matrix, band: Band) -> Solid:
     """Return an upright prism over a polygon, its foot at the pose, as an obstacle.
 
     Raises:
@@ -121,10 +145,10 @@ def prism(points: Floats, height: float, pose: Matrix, band: Band) -> Obstacle:
         raise NotHere("is a polyline that does not stand upright")
     band.refuse(float(pose[2, 3]), float(pose[2, 3]) + height)
     flat = np.column_stack([points, np.zeros(len(points))])
-    return {"shape": "polygon", "points": _pairs(_moved(flat, pose)[:, :2])}
+    return Solid({"shape": "polygon", "points": _pairs(_moved(flat, pose)[:, :2])})
 
 
-def hull(points: Floats, pose: Matrix | None, band: Band) -> tuple[Obstacle, bool]:
+def hull(points: Floats, pose: Matrix | None, band: Band) -> Solid:
     """Return the convex outline of a convex solid at the robot's heights.
 
     Args:
@@ -138,23 +162,45 @@ def hull(points: Floats, pose: Matrix | None, band: Band) -> tuple[Obstacle, boo
     from scipy.spatial import ConvexHull
 
     there = points if pose is None else _moved(points, pose)
-    band.refuse(there[:, 2].min(), there[:, 2].max())
-    found = outline(there, ConvexHull(there).simplices, band)
-    assert found is not None  # it reaches into the band, and is convex
-    return found
+    return outline(there, ConvexHull(there).simplices, band)
 
 
-def outline(points: Floats, triangles: NDArray[Any], band: Band) -> tuple[Obstacle, bool] | None:
-    """Return the convex outline of a surface at the robot's heights, and whether it was grown.
+def outline(points: Floats, triangles: NDArray[Any], band: Band) -> Solid:
+    """Return the convex outline of a surface that hangs together, at the robot's heights.
 
     Args:
         points: Shape (N, 3).
         triangles: Shape (M, 3): corners of its triangles.
         band: The robot's heights.
 
-    Returns:
-        None if nothing of it is there.
+    Raises:
+        NotHere: If the robot cannot touch it.
     """
+    import shapely
+
+    heights = points[np.unique(triangles), 2]
+    band.refuse(float(heights.min()), float(heights.max()))
+    around = _around(points, triangles, band)
+    spreads = False
+    if heights.max() > band.high:
+        whole = _around(points, triangles, Band(band.low, max(band.high, TALLEST)))
+        spreads = not whole.within(around.buffer(_SAME))
+    if not isinstance(around, shapely.Polygon):
+        flat = around.buffer(THIN / 2, cap_style="square", join_style="mitre")
+        return Solid(_polygon(flat), grown=True, spreads=spreads)
+    rectangle_around: Any = around.minimum_rotated_rectangle
+    corners = np.array(rectangle_around.exterior.coords)
+    sides = np.linalg.norm(np.diff(corners[:3], axis=0), axis=1)
+    if sides.min() < THIN:
+        grown = around.buffer(THIN / 2, join_style="mitre")
+        return Solid(_polygon(grown), grown=True, spreads=spreads)
+    # Without the corners that rounding alone has made; a round mesh loses up to 1 mm.
+    fine = len(around.exterior.coords) <= _MOST_CORNERS
+    return Solid(_polygon(around.simplify(1e-6 if fine else 0.001)), spreads=spreads)
+
+
+def _around(points: Floats, triangles: NDArray[Any], band: Band) -> Any:
+    """Return the convex outline of a surface within a band; a line or a point if it is so thin."""
     import shapely
 
     own = points[np.unique(triangles)]
@@ -166,20 +212,7 @@ def outline(points: Floats, triangles: NDArray[Any], band: Band) -> tuple[Obstac
         p, q = a[crossing], b[crossing]
         part = (level - p[:, 2]) / (q[:, 2] - p[:, 2])
         found.append((p + part[:, None] * (q - p))[:, :2])
-    flat = np.concatenate(found)
-    if not len(flat):
-        return None
-    around: Any = shapely.MultiPoint(flat).convex_hull
-    if not isinstance(around, shapely.Polygon):
-        return _polygon(around.buffer(THIN / 2, cap_style="square", join_style="mitre")), True
-    rectangle_around: Any = around.minimum_rotated_rectangle
-    corners = np.array(rectangle_around.exterior.coords)
-    sides = np.linalg.norm(np.diff(corners[:3], axis=0), axis=1)
-    if sides.min() < THIN:
-        return _polygon(around.buffer(THIN / 2, join_style="mitre")), True
-    # Without the corners that rounding alone has made; a round mesh loses up to 1 mm.
-    fine = len(around.exterior.coords) <= _MOST_CORNERS
-    return _polygon(around.simplify(1e-6 if fine else 0.001)), False
+    return shapely.MultiPoint(np.concatenate(found)).convex_hull
 
 
 def _polygon(shape: Any) -> Obstacle:
@@ -190,9 +223,9 @@ def _pairs(points: Floats) -> list[tuple[float, float]]:
     return [(float(x), float(y)) for x, y in points]
 
 
-def _circle(position: tuple[float, float], radius: float) -> tuple[Obstacle, bool]:
+def _circle(position: tuple[float, float], radius: float) -> Solid:
     one = {"shape": "cylinder", "position": position, "radius": max(radius, THIN)}
-    return one, radius < THIN
+    return Solid(one, grown=radius < THIN)
 
 
 def _moved(points: Floats, pose: Matrix) -> Floats:

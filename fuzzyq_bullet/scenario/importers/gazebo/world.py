@@ -7,10 +7,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.quantities import MAX_OBSTACLES
 from fuzzyq_bullet.reading.xml_tree import Element, read_xml
+from fuzzyq_bullet.robots.base import TALLEST
 from fuzzyq_bullet.scenario.importers.foreign import (
     THIN,
     ForeignMap,
@@ -59,6 +61,8 @@ class _Reader:
         self._band = solids.Band(solids.FLAT, options.robot_model().height)
         self._obstacles: list[Obstacle] = []
         self._left: dict[str, list[str]] = {}
+        self._changed: dict[str, list[str]] = {}
+        self._headroom = math.inf
         self._files: dict[Path, Element] = {}
         self._models = self._depth = 0
 
@@ -75,6 +79,9 @@ class _Reader:
             self._model(inner[0], Scope(root).pose(inner[0]), "", (self._path.resolve(),))
         found = ForeignMap(self._bounds(), walls=False, obstacles=self._obstacles)
         found.left_out = [f"{why}: {_some(names)}" for why, names in self._left.items()]
+        found.changed = [f"{why}: {_some(names)}" for why, names in self._changed.items()]
+        if self._headroom < TALLEST:
+            found.headroom = self._headroom
         return found
 
     def _inside(self, element: Element, pose: Matrix, name: str, files: tuple[Path, ...]) -> None:
@@ -114,7 +121,7 @@ class _Reader:
         static = element.first("static")
         is_static = static is not None and static.text.strip() in ("1", "true")
         if not is_static and len(self._obstacles) > before:
-            self._leave("models that can be pushed in Gazebo: they stand still here", name)
+            self._change("models that can be pushed in Gazebo stand still here", name)
 
     def _include(
         self, element: Element, scope: Scope, pose: Matrix, name: str, files: tuple[Path, ...]
@@ -190,15 +197,18 @@ class _Reader:
                     found = self._solid(kind, there, inner)
                 except solids.NotHere as reason:
                     self._leave(f"what {reason}", inner)
+                    self._lower(reason.bottom)
                     continue
-                for one, grown in found:
-                    self._obstacles.append(one)
-                    if grown:
-                        self._leave(f"thinner than {THIN:g} m: grown to that", inner)
+                for one in found:
+                    self._obstacles.append(one.obstacle)
+                    if one.grown:
+                        self._change(f"what is thinner than {THIN:g} m is grown to that", inner)
+                    if one.spreads:
+                        self._lower(self._band.high)
                 if len(self._obstacles) > 20 * MAX_OBSTACLES:
                     raise UserError(too_many(self._path, len(self._obstacles)))
 
-    def _solid(self, kind: Element, pose: Matrix, name: str) -> list[tuple[Obstacle, bool]]:
+    def _solid(self, kind: Element, pose: Matrix, name: str) -> list[solids.Solid]:
         """Return the obstacles that a geometry is at the robot's height.
 
         Raises:
@@ -226,14 +236,14 @@ class _Reader:
             if len(points) > 1 and np.array_equal(points[0], points[-1]):
                 points = points[:-1]
             height = kind.need("height").numbers(1, positive=True)[0]
-            return [(solids.prism(points, height, pose, band), False)]
+            return [solids.prism(points, height, pose, band)]
         if kind.tag == "mesh":
             return self._mesh(kind, pose, name)
         if kind.tag not in ("plane", "empty"):  # a plane is the ground
             self._leave(f"{kind.tag[:40]}s: no solids that are read", name)
         return []
 
-    def _mesh(self, kind: Element, pose: Matrix, name: str) -> list[tuple[Obstacle, bool]]:
+    def _mesh(self, kind: Element, pose: Matrix, name: str) -> list[solids.Solid]:
         uri = kind.need("uri")
         path = next((one for one in self._candidates(uri, kind.path.parent) if one.is_file()), None)
         if path is None:
@@ -243,13 +253,21 @@ class _Reader:
         points, triangles = read_mesh(path, uri.where)
         points = points * (scale.numbers(3) if scale else 1.0)
         points = points @ pose[:3, :3].T + pose[:3, 3]
-        self._band.refuse(points[:, 2].min(), points[:, 2].max())
-        parts = (solids.outline(points, body, self._band) for body in bodies(points, triangles))
+        self._band.refuse(float(points[:, 2].min()), float(points[:, 2].max()))
+        parts = (self._part(points, body) for body in bodies(points, triangles))
         found = [part for part in parts if part is not None]
         if not found:
             raise solids.NotHere("has nothing at the height of the robot")
-        self._leave("meshes: each part is its convex outline at the robot's height", name)
+        self._change("parts of meshes are their convex outlines at the robot's height", name)
         return found
+
+    def _part(self, points: solids.Floats, body: NDArray[np.intp]) -> solids.Solid | None:
+        """Return what of a part of a mesh the robot could touch; None for nothing."""
+        try:
+            return solids.outline(points, body, self._band)
+        except solids.NotHere as reason:
+            self._lower(reason.bottom)
+            return None
 
     def _bounds(self) -> Bounds:
         if not self._obstacles:
@@ -277,6 +295,13 @@ class _Reader:
 
     def _leave(self, why: str, name: str) -> None:
         self._left.setdefault(why, []).append(name)
+
+    def _change(self, what: str, name: str) -> None:
+        self._changed.setdefault(what, []).append(name)
+
+    def _lower(self, height: float) -> None:
+        """Note that a robot taller than this (m) could touch what is no obstacle here."""
+        self._headroom = min(self._headroom, height)
 
 
 def _some(names: list[str]) -> str:
