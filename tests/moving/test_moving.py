@@ -126,6 +126,18 @@ def test_the_greatest_speed_is_known_or_seen(motion: str, speed: float) -> None:
         assert Episode(built, world).observe().closing_speed == (seen if told is None else told)
 
 
+@pytest.mark.parametrize("speed", [0.3, 2.5])
+def test_however_fast_a_wanderer_goes_into_nothing(speed: float) -> None:
+    # Legs that are shorter than it goes in 0.05 s, in a corridor hardly wider than itself.
+    lane = "shape: box, position: [3.0, 1.4], size: [4.0, 0.2]"
+    world = room(disc(3.0, 0.65, f"kind: wander, speed: {speed}", radius=0.62), lane)
+    course = courses_of(world.obstacles, world.arena, world.seed)[0]
+    way = np.array([course.pose(t)[:2] for t in np.arange(0.0, 120.0, 0.01)]) + (3.0, 0.65)
+    assert Field.of(world.standing, world.arena).clearance(way).min() >= 0.62 - 1e-5
+    assert np.hypot(*np.diff(way, axis=0).T).max() <= 0.01 * speed + 1e-9
+    assert np.ptp(way[:, 0]) > 0.3
+
+
 def test_a_trace_is_read_from_its_file_and_kept(tmp_path: Path) -> None:
     (tmp_path / "walk.csv").write_text("t,x,y,yaw\n0,3,1,0\n2,3,2,1\n4,4,2,1\n")
     world = room(disc(3.0, 1.0, "kind: trace, file: walk.csv"), folder=tmp_path)
@@ -190,6 +202,16 @@ def test_what_stops_for_the_robot_never_touches_one_at_rest(drive: str) -> None:
     way = record.movers[:, 0, 0]
     assert way[-1] == way[-20 if drive == "wheels" else -5]  # it stands, and its clock with it
     assert 0.1 <= record.ticks.clearance[-1] <= 0.7
+
+
+def test_one_that_stopped_is_touched_where_it_stands() -> None:
+    motion = "kind: patrol, points: [[4, 2], [0.5, 2]], speed: 2.0, stops_for_robot: true"
+    record = stand(room(disc(4.0, 2.0, motion)), 8.0, step=0.4)
+    assert record.collision is not None
+    assert record.movers[-1, 0, 0] == record.movers[-5, 0, 0]  # the robot drove into it
+    # In a step of 1/240 s the robot goes 2.5 mm: no contact is seen later than that.
+    assert record.ticks.clearance[-1] >= -0.005
+    assert record.ticks.clearance[:-1].min() > 0.0
 
 
 def test_one_that_has_passed_goes_on() -> None:
