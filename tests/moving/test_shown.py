@@ -132,11 +132,14 @@ def test_that_it_gives_way_is_shown_at_once(crossed: Trajectory) -> None:
     decisions = crossed.decisions
     target = decisions.target.copy()
     target[23:] = 4.0, 4.0  # a temporary goal
-    record = replace(crossed, decisions=replace(decisions, target=target))
-    time = float(record.ticks.time[decisions.tick[23]])
+    heading = decisions.heading.copy()
+    heading[25:] += 2.0  # and then one on the other side
+    heading[27:] += 1.0  # a little farther that way
+    record = replace(crossed, decisions=replace(decisions, target=target, heading=heading))
+    time = record.ticks.time[decisions.tick].tolist()
     timeline, hold = Timeline(record), DecisionHold(record)
-    assert hold.at(timeline.at(time - 0.01)) < 23
-    assert hold.at(timeline.at(time)) == 23
+    assert hold.at(timeline.at(time[23] - 0.01)) < 23
+    assert [hold.at(timeline.at(time[k])) for k in (23, 24, 25, 26, 27)] == [23, 23, 25, 25, 25]
 
 
 def test_csv_has_a_row_for_each_tick(crossed: Trajectory) -> None:
