@@ -23,8 +23,8 @@ class DecisionHold:
     """The decision shown at any time of a run; it depends on nothing but the time.
 
     Each is held for a while, then the one in force takes its place. Another mode, a turn to the
-    other side, something on a way that was clear, or that the robot gives way, and to which side, is
-    shown at once.
+    other side, something on a way that was clear, or that the robot gives way, and to which side,
+    is shown at once.
 
     Args:
         trajectory: The run.
