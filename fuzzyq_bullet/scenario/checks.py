@@ -173,7 +173,7 @@ def _random(scenario: Scenario) -> list[Conflict]:
     if scenario.random is None:
         return []
     drawn = scenario.random
-    found = [(("random", *loc), why) for loc, why in drawn.conflicts(scenario)]
+    found: list[Conflict] = [(("random", *loc), why) for loc, why in drawn.conflicts(scenario)]
     if drawn.movers is not None:
         moving = drawn.movers.conflicts(scenario)
         found += [(("random", "movers", key), why) for key, why in moving]
