@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -178,6 +179,19 @@ def test_a_robot_at_rest_is_touched_and_not_at_fault(drive: str) -> None:
     strict = scenario.expect.model_copy(update={"contact": "none"})
     assert unmet_expectations(strict, result) == ["outcome collision, expected goal"]
     assert record.ticks.position[-1] == pytest.approx((1.0, 2.0), abs=0.01)  # not pushed away
+
+
+@pytest.mark.parametrize(
+    ("speed", "words"),
+    [(0.05001, "0.05001 m/s: at"), (0.0476, "0.0476 m/s: not at"), (0.061, "0.06 m/s: at")],
+)
+def test_a_speed_near_the_limit_is_told_exactly(speed: float, words: str) -> None:
+    motion = "kind: patrol, points: [[2.5, 2], [0.5, 2]], speed: 0.5"
+    record = stand(room(disc(2.5, 2.0, motion)), 5.0)
+    speeds = record.ticks.speed.copy()
+    speeds[-4] = speed
+    record = replace(record, ticks=replace(record.ticks, speed=speeds))
+    assert f"the robot at {words} fault" in collision_text(record, 1)
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
