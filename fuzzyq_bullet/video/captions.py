@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.planning.decision import MODES
+from fuzzyq_bullet.recording.fault import at_fault, speeds_in_words
 from fuzzyq_bullet.recording.rules_turn import has_rules
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import reason, struck
@@ -165,7 +166,8 @@ class Story:
         if not over:
             return reason(self._trajectory, decision)
         if self._trajectory.collision is not None:
-            return f"Ran into {struck(self._trajectory)}"
+            hit_by = speeds_in_words(self._trajectory) and not at_fault(self._trajectory)
+            return f"{'Was hit by' if hit_by else 'Ran into'} {struck(self._trajectory)}"
         return _ENDINGS[self._trajectory.outcome]
 
 
@@ -182,6 +184,8 @@ def outcome_lines(trajectory: Trajectory) -> tuple[str, str]:
     closest = float(ticks.clearance.min())
     if closest < float("inf") and hit is None:
         facts.append(f"least clearance {max(closest, 0.0):.2f} m")
+    if speeds := speeds_in_words(trajectory):
+        facts.append(speeds)
     return title, "   ".join(facts)
 
 
