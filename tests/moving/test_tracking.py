@@ -12,6 +12,11 @@ from hypothesis import strategies as st
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import Observation, RangeSensor
 from fuzzyq_bullet.planning.traffic.circle_fit import fit_circle
+from fuzzyq_bullet.planning.traffic.lidar_scan import (
+    SURFACE_TOLERANCE,
+    in_free_space,
+    lidar_scan,
+)
 from fuzzyq_bullet.planning.traffic.tracker import Tracker
 from fuzzyq_bullet.scenario import Box, Cylinder
 
@@ -19,14 +24,14 @@ PERIOD, RANGE, WIDE = 0.05, 1.0, 0.22
 angles = st.floats(-math.pi, math.pi)
 
 
-def reading(time, position, obstacles, noise=0.0, rng=None):
+def reading(time, position, obstacles, noise=0.0, rng=None, sees=RANGE):
     """Return what a robot at a position sees of obstacles at a time."""
     field = Field.of(obstacles)
 
     def look(headings):
-        free = field.free_distance(position, headings, 0.0, RANGE + WIDE)
+        free = field.free_distance(position, headings, 0.0, sees + WIDE)
         told = free + (rng.normal(0.0, noise, len(free)) if noise else 0.0)
-        return np.where(free < RANGE + WIDE, np.clip(told, 0.0, RANGE + WIDE), free)
+        return np.where(free < sees + WIDE, np.clip(told, 0.0, sees + WIDE), free)
 
     return Observation(
         time=time,
@@ -36,9 +41,9 @@ def reading(time, position, obstacles, noise=0.0, rng=None):
         turn_rate=0.0,
         goal=(50.0, 0.0),
         goal_radius=0.2,
-        range=RANGE,
+        range=sees,
         radius=WIDE,
-        sensor=RangeSensor(lambda headings: [RANGE] * len(headings), look),
+        sensor=RangeSensor(lambda headings: [sees] * len(headings), look),
         uncertainty=3.0 * noise,
         closing_speed=0.6,
     )
@@ -111,6 +116,16 @@ def test_what_stands_is_never_told_to_move(drives, own, noise, seed):
     # What was seen for a while is not distrusted any more.
     if own == 0.0:
         assert not len(traffic.points)
+
+
+@pytest.mark.parametrize("sees", [1.0, 1.5])
+@given(st.floats(0.0, 0.5), st.floats(0.25, 0.5), st.floats(0.005, 0.05), st.floats(0.0, 0.03))
+def test_a_surface_is_not_in_free_space_however_noise_moves_it(sees, beyond, apart, beside, off):
+    # Rays that graze a wall pass close to it, and meet nothing behind it.
+    wall = Box(shape="box", position=(1.0, -1.0), size=(1.0, 2.0))
+    scan = lidar_scan(reading(0.0, (0.5 - apart, beside), [wall], sees=sees))
+    point = np.array([(0.5 + beyond, off)])
+    assert not in_free_space(scan, point, SURFACE_TOLERANCE + 2.0 * 0.03)[0]
 
 
 def test_what_has_just_come_into_sight_may_come_as_fast_as_was_said():
