@@ -172,7 +172,12 @@ def range_conflict(scenario: Scenario) -> str | None:
 def _random(scenario: Scenario) -> list[Conflict]:
     if scenario.random is None:
         return []
-    return [(("random", *loc), why) for loc, why in scenario.random.conflicts(scenario)]
+    drawn = scenario.random
+    found: list[Conflict] = [(("random", *loc), why) for loc, why in drawn.conflicts(scenario)]
+    if drawn.movers is not None:
+        moving = drawn.movers.conflicts(scenario)
+        found += [(("random", "movers", key), why) for key, why in moving]
+    return found
 
 
 def _in_words(arena: Arena) -> str:
