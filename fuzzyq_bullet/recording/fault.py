@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.recording.trajectory import Trajectory
 
 FAULT_SPEED = 0.05
-"""A robot that moves faster than this (m/s) when it touches something is at fault."""
+"""A robot that moves faster than this (m/s) when it touches something that moves is at fault."""
 FAULT_TIME = 0.3
 """It is also at fault if it was so fast within this time (s) before."""
 
@@ -20,10 +20,13 @@ FAULT_TIME = 0.3
 def at_fault(trajectory: Trajectory) -> bool | None:
     """Return whether the robot was at fault for the contact that ended its run; None without one.
 
-    Passive safety: a robot that stands, and has stood for a moment, has done what it can.
+    Passive safety: a robot that stands, and has stood for a moment, has done what it can. What
+    stands still does not come to a robot, however slowly that creeps.
     """
-    speed = robot_speed(trajectory)
-    return None if speed is None else speed > FAULT_SPEED
+    hit, speed = trajectory.collision, robot_speed(trajectory)
+    if hit is None or speed is None:
+        return None
+    return hit.obstacle not in trajectory.scenario.movers or speed > FAULT_SPEED
 
 
 def robot_speed(trajectory: Trajectory) -> float | None:

@@ -13,6 +13,7 @@ from fuzzyq_bullet.episode import Episode, run, world_of
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning import Decision
+from fuzzyq_bullet.recording.fault import FAULT_SPEED, robot_speed
 from fuzzyq_bullet.recording.metrics import collision_text, result_of
 from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario
@@ -207,6 +208,21 @@ def test_a_robot_that_drives_into_one_is_at_fault(drive: str) -> None:
     assert unmet_expectations(scenario.expect, result) == ["outcome collision, expected goal"]
     assert "at_fault" in result.model_dump()
     assert "at_fault" not in result_of(stand(room(), 0.1)).model_dump()
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_a_robot_that_creeps_into_what_stands_still_is_at_fault(drive: str) -> None:
+    scenario = room(
+        "shape: cylinder, position: [1.5, 2.0], radius: 0.25",
+        more=f"drive: {drive}\nexpect: {{contact: not-at-fault}}\n",
+    )
+    record = stand(scenario, 20.0, step=0.02)
+    result, speed = result_of(record), robot_speed(record)
+    assert record.collision is not None
+    assert speed is not None
+    assert speed < FAULT_SPEED
+    assert result.at_fault is True
+    assert unmet_expectations(scenario.expect, result) == ["outcome collision, expected goal"]
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
