@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from fuzzyq_bullet.blame import blamed
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE
@@ -172,7 +173,12 @@ def range_conflict(scenario: Scenario) -> str | None:
 def _random(scenario: Scenario) -> list[Conflict]:
     if scenario.random is None:
         return []
-    return [(("random", *loc), why) for loc, why in scenario.random.conflicts(scenario)]
+    who = f"layout {scenario.random.layout}"
+    try:
+        with blamed(who, "in conflicts"):
+            return [(("random", *loc), why) for loc, why in scenario.random.conflicts(scenario)]
+    except UserError as error:
+        return [(("random",), str(error))]
 
 
 def _in_words(arena: Arena) -> str:
