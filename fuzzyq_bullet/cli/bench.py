@@ -47,7 +47,7 @@ class _Studies(TyperGroup):
 
         if cmd_name not in study_names():
             return super().get_command(ctx, cmd_name)
-        holder = typer.Typer(add_completion=False)
+        holder = typer.Typer(add_completion=False, rich_markup_mode="markdown")
         command = _command_of(study_of(cmd_name))
         holder.command(cmd_name, help=help_of(command))(command)
         return typer.main.get_command(holder)
@@ -193,4 +193,6 @@ def _option_of(name: str, field: Any) -> Any:
     bounds = {} if name == "seed" else _bounds(field)  # whose bounds are longer than the help
     usual = "FILE" if field.annotation == Path | None else None
     metavar = (field.json_schema_extra or {}).get("metavar", usual)
-    return typer.Option(help=field.description, metavar=metavar, **bounds)
+    # A list is shown with spaces, at which its lines break; without them it would be cut off.
+    shown = field.default.replace(",", ", ") if "," in str(field.default) else True
+    return typer.Option(help=field.description, metavar=metavar, show_default=shown, **bounds)

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import jsonschema
@@ -265,6 +266,15 @@ def test_the_command_alone_and_a_group_alone_show_their_help(fuzzyq: Call) -> No
         assert done.returncode == 0
         assert word in done.stdout
         assert done.stderr == ""
+
+
+def test_the_help_of_a_study_is_whole_and_flows(fuzzyq: Call) -> None:
+    lines = fuzzyq("bench", "field", "--help").stdout.splitlines()
+    options = next(number for number, line in enumerate(lines) if "╭" in line)
+    told = " ".join(" ".join(lines[options:]).replace("│", " ").split())
+    assert "q-lambda, fuzzy-q-lambda, dwa, vfh, apf, tangent-bug" in told
+    prose = [line.strip() for line in lines[:options]]
+    assert min(len(line) for line, after in pairwise(prose) if line and after) > 50
 
 
 def test_the_version_is_that_of_the_package_and_the_module_runs_too(installed: Call) -> None:
