@@ -188,10 +188,10 @@ class Movers:
             gap = math.dist(robot, (x, y)) - one.extent - radius
             looked_at = STOP_AHEAD + STOP_GAP if one.stops else _NEAR
             stops = gap <= looked_at and one.stops and one.is_blocked(self.time, robot, radius)
+            self._put_solid(one)  # also of one that stops now: it stands where it is, not was
             if stops or gap <= _NEAR:
                 near.append((one, stops))
                 continue
-            self._put_solid(one)
             if gap > looked_at:
                 self._asleep_until[one.index] = self.time + (gap - looked_at) / _FASTEST
         return near

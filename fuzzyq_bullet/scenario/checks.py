@@ -173,12 +173,18 @@ def range_conflict(scenario: Scenario) -> str | None:
 def _random(scenario: Scenario) -> list[Conflict]:
     if scenario.random is None:
         return []
-    who = f"layout {scenario.random.layout}"
+    drawn = scenario.random
     try:
-        with blamed(who, "in conflicts"):
-            return [(("random", *loc), why) for loc, why in scenario.random.conflicts(scenario)]
+        with blamed(f"layout {drawn.layout}", "in conflicts"):
+            found: list[Conflict] = [
+                (("random", *loc), why) for loc, why in drawn.conflicts(scenario)
+            ]
     except UserError as error:
-        return [(("random",), str(error))]
+        found = [(("random",), str(error))]
+    if drawn.movers is not None:
+        moving = drawn.movers.conflicts(scenario)
+        found += [(("random", "movers", key), why) for key, why in moving]
+    return found
 
 
 def _in_words(arena: Arena) -> str:

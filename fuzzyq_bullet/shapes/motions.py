@@ -35,7 +35,7 @@ _SCATTER = math.radians(30.0)
 _LEAST_LEG = 0.05
 """A direction that is free for less than this (m) is not taken if there is a better one."""
 _LEAST_TIME = 0.05
-"""No straight piece of a wanderer's way is shorter than this (s)."""
+"""A leg takes at least so long (s), the shorter ones at less speed: no loop without end."""
 _TRIES = 16
 _LONGEST_LEG = 3000.0
 _STEP = 1e-3
@@ -52,7 +52,7 @@ class _Leg(NamedTuple):
 
 
 class _Legs:
-    """A way made of straight pieces, from time 0 on; with a period it repeats those ``after``."""
+    """A way made of straight pieces; it stands still before the first and on the last if told."""
 
     def __init__(self, legs: list[_Leg], period: float | None = None, after: float = 0.0) -> None:
         self._legs = legs
@@ -212,13 +212,13 @@ class _Wandering:
         return Pose(leg.x + leg.vx * since - x, leg.y + leg.vy * since - y, 0.0)
 
     def _append(self, start: Point, heading: float, free: float) -> None:
-        # Where it can go hardly anywhere it takes a while, or waits: no loop without end.
-        speed = min(self._speed, free / _LEAST_TIME)
+        lasts = free / self._speed
+        speed = self._speed if lasts >= _LEAST_TIME else free / _LEAST_TIME
         self._legs.append(
             _Leg(self._end, *start, speed * math.cos(heading), speed * math.sin(heading))
         )
         self._times.append(self._end)
-        self._end += max(free / self._speed, _LEAST_TIME)
+        self._end += max(lasts, _LEAST_TIME)
 
     def _bounce(self) -> None:
         leg = self._legs[-1]
