@@ -54,7 +54,7 @@ def test_the_greatest_speed_shortly_before_counts(
 ) -> None:
     record = hit(speeds, period)
     assert robot_speed(record) == pytest.approx(speed)
-    assert at_fault(record) is (speed > 0.05)
+    assert at_fault(record)  # a wall comes to nobody
 
 
 def test_a_point_is_as_fast_as_its_last_step() -> None:

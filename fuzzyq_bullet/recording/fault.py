@@ -34,9 +34,8 @@ def robot_speed(trajectory: Trajectory) -> float | None:
     if trajectory.collision is None:
         return None
     ticks, time = trajectory.ticks, trajectory.collision.time
-    if (
-        trajectory.scenario.drive == "kinematic" and len(ticks.time) > 1
-    ):  # the contact cut the last move short
+    if trajectory.scenario.drive == "kinematic" and len(ticks.time) > 1:
+        # The contact cut the last move short.
         return float(trajectory.decisions.step[-1] / (ticks.time[-1] - ticks.time[-2]))
     before = ticks.time >= time - FAULT_TIME - 1e-9
     before[-2:] = True  # of few decisions a second, the tick before the contact is older
