@@ -167,6 +167,10 @@ def test_wheels_of_a_urdf_with_names_of_their_own_are_named_by_options(
     assert load_scenario("low.yaml").robot.spec.axles == ("a", "b")
 
 
+def test_an_arena_without_headroom_is_told_as_before_so_digests_of_fields_stay() -> None:
+    assert "headroom" not in load_scenario("boxes").model_dump()["arena"]
+
+
 def test_a_scenario_of_a_lower_robot_is_not_imported_for_a_taller_one(tmp_path: Path) -> None:
     made = tmp_path / "own.yaml"
     made.write_text(

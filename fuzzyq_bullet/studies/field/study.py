@@ -85,7 +85,10 @@ class AgainstField(Study):
             return
         found = worlds_in(self._asked(self.worlds))
         told_of = ((*what.partition(": "), count) for what, count in found.notes.items())
-        notes = [f"{word} in {count} worlds: {what}" for word, _, what, count in told_of]
+        notes = [
+            f"{word} in {count} world{'' if count == 1 else 's'}: {what}"
+            for word, _, what, count in told_of
+        ]
         yield Stage(WORLDS, self._worlds(told, found), planners, tuple(notes))
 
     def _fields(self, planners: Mapping[str, Any]) -> FieldPlan:
