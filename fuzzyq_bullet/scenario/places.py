@@ -40,8 +40,8 @@ class Arena(Model):
     origin: Point = Field(default=(0.0, 0.0), description="Its lower left corner (m).")
     headroom: Length | None = Field(
         default=None,
-        description="Up to this height (m) the obstacles are all that a robot can touch; a taller "
-        "robot is refused. Default: they are so for every robot.",
+        description="Up to this height (m) the obstacles are complete; a taller robot is refused. "
+        "Default: they are complete for every robot.",
     )
 
     @model_serializer(mode="wrap")
