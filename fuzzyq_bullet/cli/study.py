@@ -122,9 +122,11 @@ def _judge(findings: Findings, last: Swept) -> None:
     """Say what is wrong; then the exit code is 1, or 2 where an input could not be read."""
     from fuzzyq_bullet.cli.process import say_error
 
-    errors = sum(row.outcome == "error" for row in last.rows)
+    errors = [row for row in last.rows if row.outcome == "error"]
     if errors:
-        say(f"{errors} episodes failed themselves: see the column error", style="bold")
+        first, plural = errors[0], "" if len(errors) == 1 else "s"
+        say(f"{len(errors)} episode{plural} failed: see the column error; the first:", style="bold")
+        say(f"  {first.planner}: {first.error}")
     if findings.missed:
         say("targets missed: " + "; ".join(findings.missed), style="bold")
     for problem in findings.problems:

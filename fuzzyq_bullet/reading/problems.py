@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import typing
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -9,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
 from fuzzyq_bullet.quantities import ModelRegistry
 from fuzzyq_bullet.reading.yaml_tree import Node
@@ -86,6 +88,12 @@ def is_short_list(error: dict[str, Any]) -> bool:
     return error["type"] == "missing" and isinstance(error["loc"][-1], int)
 
 
+def is_of_its_items(error: dict[str, Any]) -> bool:
+    """Tell a list that is long enough, of which pydantic counts only the items that are right."""
+    value, bound = error["input"], error.get("ctx", {}).get("min_length", 0)
+    return error["type"] == "too_short" and isinstance(value, list | tuple) and len(value) >= bound
+
+
 def problem_of(error: dict[str, Any], loc: Loc, keys: Sequence[str]) -> Problem:
     """Return one of pydantic's errors in words.
 
@@ -125,12 +133,17 @@ def keys_at(
             found
             for kind in here
             if isinstance(part, str) and part in kind.model_fields
-            for found in _models_in(kind.model_fields[part].annotation)
+            for found in _models_of(kind.model_fields[part])
         ]
         tagged = [kind for kind in here if part in tags(kind)]
         here = inner or tagged or here
     fields = (one for kind in here for one in kind.model_fields.items())
     return list(dict.fromkeys(field.alias or name for name, field in fields))
+
+
+def _models_of(field: FieldInfo) -> Iterator[type[BaseModel]]:
+    registries = [one for one in field.metadata if isinstance(one, ModelRegistry)]
+    return itertools.chain(*registries) if registries else _models_in(field.annotation)
 
 
 def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
@@ -166,8 +179,9 @@ def _bound(words: str, limit: str) -> Callable[[Any, dict[str, Any]], str]:
 def _length(value: Any, context: dict[str, Any]) -> str:
     bound = context.get("max_length", context.get("min_length"))
     limit = "at most" if "max_length" in context else "at least"
-    got = context.get("actual_length") or "more"  # pydantic stops counting a long one
-    return f"must have {limit} {bound} values, got {got}"
+    got = context.get("actual_length")
+    # pydantic stops counting a long one
+    return f"must have {limit} {bound} values, got {'more' if got is None else got}"
 
 
 _WORDING: dict[str, Callable[[Any, dict[str, Any]], str]] = {

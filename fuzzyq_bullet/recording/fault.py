@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from fuzzyq_bullet.recording.trajectory import Trajectory
 
 FAULT_SPEED = 0.05
-"""A robot that moves faster than this (m/s) when it touches something is at fault."""
+"""A robot that moves faster than this (m/s) when it touches something that moves is at fault."""
 FAULT_TIME = 0.3
 """It is also at fault if it was so fast within this time (s) before."""
 
@@ -20,10 +20,13 @@ FAULT_TIME = 0.3
 def at_fault(trajectory: Trajectory) -> bool | None:
     """Return whether the robot was at fault for the contact that ended its run; None without one.
 
-    Passive safety: a robot that stands, and has stood for a moment, has done what it can.
+    Passive safety: a robot that stands, and has stood for a moment, has done what it can. What
+    stands still does not come to a robot, however slowly that creeps.
     """
-    speed = robot_speed(trajectory)
-    return None if speed is None else speed > FAULT_SPEED
+    hit, speed = trajectory.collision, robot_speed(trajectory)
+    if hit is None or speed is None:
+        return None
+    return hit.obstacle not in trajectory.scenario.movers or speed > FAULT_SPEED
 
 
 def robot_speed(trajectory: Trajectory) -> float | None:
@@ -31,10 +34,12 @@ def robot_speed(trajectory: Trajectory) -> float | None:
     if trajectory.collision is None:
         return None
     ticks, time = trajectory.ticks, trajectory.collision.time
-    if trajectory.scenario.drive == "kinematic":  # the contact cut the last move short
+    if trajectory.scenario.drive == "kinematic" and len(ticks.time) > 1:
+        # The contact cut the last move short.
         return float(trajectory.decisions.step[-1] / (ticks.time[-1] - ticks.time[-2]))
     before = ticks.time >= time - FAULT_TIME - 1e-9
-    before[-1] &= len(ticks.time) == 1  # the last speed is what the contact has made of it
+    before[-2:] = True  # of few decisions a second, the tick before the contact is older
+    before[-1] = len(ticks.time) == 1  # the last speed is what the contact has made of it
     return float(np.abs(ticks.speed[before]).max(initial=0.0))
 
 
@@ -59,4 +64,6 @@ def speeds_in_words(trajectory: Trajectory) -> str:
     if other is None or own is None:
         return ""
     whose = "at fault" if own > FAULT_SPEED else "not at fault"
-    return f"it moved at {other:.2f} m/s, the robot at {own:.2f} m/s: {whose}"
+    # A speed that is rounded to the limit would not say on which side of it it is.
+    told = f"{own:.4g}" if round(own, 2) == FAULT_SPEED else f"{own:.2f}"
+    return f"it moved at {other:.2f} m/s, the robot at {told} m/s: {whose}"

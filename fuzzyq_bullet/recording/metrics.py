@@ -73,8 +73,9 @@ class Result(BaseModel):
         version: Version of fuzzyq_bullet.
         no_shortest_path: Why ``shortest_path_m`` is null; not there if it is a length.
         via_passed: Via points that were passed; not there in a scenario without any.
-        at_fault: Whether the robot moved faster than 0.05 m/s when it touched something, or within
-            0.3 s before; not there if it touched nothing.
+        at_fault: Whether the robot touched something that stands still, or moved faster than
+            0.05 m/s when it touched something that moves, or within 0.3 s before; not there if it
+            touched nothing.
     """
 
     model_config = ConfigDict(frozen=True)

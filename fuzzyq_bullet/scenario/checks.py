@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from fuzzyq_bullet.blame import blamed
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE
@@ -172,7 +173,18 @@ def range_conflict(scenario: Scenario) -> str | None:
 def _random(scenario: Scenario) -> list[Conflict]:
     if scenario.random is None:
         return []
-    return [(("random", *loc), why) for loc, why in scenario.random.conflicts(scenario)]
+    drawn = scenario.random
+    try:
+        with blamed(f"layout {drawn.layout}", "in conflicts"):
+            found: list[Conflict] = [
+                (("random", *loc), why) for loc, why in drawn.conflicts(scenario)
+            ]
+    except UserError as error:
+        found = [(("random",), str(error))]
+    if drawn.movers is not None:
+        moving = drawn.movers.conflicts(scenario)
+        found += [(("random", "movers", key), why) for key, why in moving]
+    return found
 
 
 def _in_words(arena: Arena) -> str:

@@ -16,6 +16,7 @@ from fuzzyq_bullet.reading.problems import (
     MAX_SHOWN,
     Loc,
     Problem,
+    is_of_its_items,
     is_short_list,
     keys_at,
     problem_of,
@@ -42,6 +43,8 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
     """
     found: dict[Loc, Problem] = {}
     for item in error.errors(include_url=False)[:MAX_WORDED]:
+        if is_of_its_items(dict(item)):
+            continue  # each of them that is wrong is told
         problem = _problem(dict(item), data)
         if problem.loc not in found or is_short_list(dict(item)):
             found[problem.loc] = problem

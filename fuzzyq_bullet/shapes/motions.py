@@ -34,6 +34,8 @@ _SCATTER = math.radians(30.0)
 """A wanderer leaves a wall at most this far from the mirrored direction (rad)."""
 _LEAST_LEG = 0.05
 """A direction that is free for less than this (m) is not taken if there is a better one."""
+_LEAST_TIME = 0.05
+"""A leg takes at least so long (s), the shorter ones at less speed: no loop without end."""
 _TRIES = 16
 _LONGEST_LEG = 3000.0
 _STEP = 1e-3
@@ -210,13 +212,13 @@ class _Wandering:
         return Pose(leg.x + leg.vx * since - x, leg.y + leg.vy * since - y, 0.0)
 
     def _append(self, start: Point, heading: float, free: float) -> None:
-        vx, vy = self._speed * math.cos(heading), self._speed * math.sin(heading)
-        self._legs.append(_Leg(self._end, *start, vx, vy))
+        lasts = free / self._speed
+        speed = self._speed if lasts >= _LEAST_TIME else free / _LEAST_TIME
+        self._legs.append(
+            _Leg(self._end, *start, speed * math.cos(heading), speed * math.sin(heading))
+        )
         self._times.append(self._end)
-        # Where it can go nowhere it waits for a while: no loop without end.
-        self._end += max(free / self._speed, _LEAST_LEG)
-        if free <= 0.0:
-            self._legs[-1] = self._legs[-1]._replace(vx=0.0, vy=0.0)
+        self._end += max(lasts, _LEAST_TIME)
 
     def _bounce(self) -> None:
         leg = self._legs[-1]

@@ -10,18 +10,20 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
-from pydantic import Field, field_validator
+from pydantic import Field, TypeAdapter, ValidationError, field_validator
 from pydantic_core import PydanticCustomError
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_text
 from fuzzyq_bullet.quantities import DECIMALS, Angle, Coordinate, Flag, Number
+from fuzzyq_bullet.reading.problems import problem_of
 from fuzzyq_bullet.shapes.motion import (
     MAX_MOTION_SPEED,
     Course,
     Motion,
     Moving,
     Pose,
+    Standing,
     Surroundings,
     register_motion,
     turned_about_origin,
@@ -35,7 +37,12 @@ MAX_ROWS = 20_000
 _MAX_BYTES = 2_000_000
 _COLUMNS = ("t", "x", "y", "yaw")
 _ROUNDING = 1e-6
+_TICK = 0.05
+"""Time (s) in which a trace that is repeated goes from its last row to its first."""
+_JUMP = MAX_MOTION_SPEED * _TICK
+"""So it may end no farther (m) from where it begins."""
 Row: TypeAlias = tuple[Annotated[Number, Field(ge=0.0, le=7200.0)], Coordinate, Coordinate, Angle]
+_ROW: TypeAdapter[Row] = TypeAdapter(Row)
 
 
 @register_motion
@@ -63,25 +70,36 @@ class Trace(Motion):
     @classmethod
     def _are_in_order(cls, poses: tuple[Row, ...]) -> tuple[Row, ...]:
         for i, (one, two) in enumerate(pairwise(poses), 2):
-            told = {"row": i, "time": f"{two[0]:g}", "before": f"{one[0]:g}"}
-            if two[0] <= one[0]:
-                raise PydanticCustomError(
-                    "trace_order",
-                    "row {row} is out of order: t = {time} s does not come after {before} s",
-                    told,
-                )
-            speed = math.dist(one[1:3], two[1:3]) / (two[0] - one[0])
-            if speed > MAX_MOTION_SPEED + _ROUNDING:
-                raise PydanticCustomError(
-                    "trace_speed",
-                    "row {row} (t = {time} s) is reached at {speed} m/s; at most {most} m/s",
-                    {**told, "speed": f"{speed:.2f}", "most": f"{MAX_MOTION_SPEED:g}"},
-                )
+            if why := _misstep(one, two):
+                raise PydanticCustomError("trace", "row {row} {why}", {"row": i, "why": why})
         return poses
 
     def course(self, obstacle: Moving, surroundings: Surroundings) -> Course:
         """Return the way along the rows."""
         return _Traced(self, obstacle.position)
+
+    def top_speed(self, obstacle: Moving) -> float:
+        """Return the speed of its edge on the way to that row which it reaches fastest."""
+        extent = obstacle.extent()
+        jump = math.dist(self.poses[-1][1:3], self.poses[0][1:3]) / _TICK if self.repeat else 0.0
+        ways = (
+            (math.dist(one[1:3], two[1:3]) + extent * abs(two[3] - one[3])) / (two[0] - one[0])
+            for one, two in pairwise(self.poses)
+        )
+        return max(jump, *ways, 0.0)
+
+    def conflicts(self, obstacle: Moving, standing: Standing) -> list[tuple[str, str]]:
+        """Return whether it turns too fast, or jumps where it begins again."""
+        extent, key = obstacle.extent(), "file" if self.file else "poses"
+        for one, two in pairwise(self.poses):
+            speed = extent * abs(two[3] - one[3]) / (two[0] - one[0])
+            if speed > MAX_MOTION_SPEED + _ROUNDING:
+                turns = f"turns so fast before t = {two[0]:g} s that its edge moves at"
+                return [(key, f"{turns} {speed:.2f} m/s; at most {MAX_MOTION_SPEED:g} m/s")]
+        jump = math.dist(self.poses[-1][1:3], self.poses[0][1:3])
+        if self.repeat and jump > _JUMP:
+            return [("repeat", f"jumps {jump:.2f} m, from its last row to its first")]
+        return []
 
     def moved(self, x: float, y: float, turn: float) -> Self:
         """Return it with its rows turned about the origin and moved."""
@@ -111,30 +129,47 @@ class _Traced:
         return Pose(x - self._x, y - self._y, yaw)
 
 
-def read_trace(path: Path) -> list[list[float]]:
+def _misstep(one: Row, two: Row) -> str:
+    """Say what is wrong with a row that follows another; nothing if it is well."""
+    if two[0] <= one[0]:
+        return f"is out of order: t = {two[0]:g} s does not come after {one[0]:g} s"
+    speed = math.dist(one[1:3], two[1:3]) / (two[0] - one[0])
+    if speed > MAX_MOTION_SPEED + _ROUNDING:
+        return f"is reached at {speed:.2f} m/s; at most {MAX_MOTION_SPEED:g} m/s"
+    return ""
+
+
+def read_trace(path: Path) -> list[Row]:
     """Read the rows of a trace: time, x, y and yaw, which is 0 where there is no such column.
 
     Raises:
         UserError: If the file is missing, or is no table of such numbers.
     """
     text = read_text(path, what="a trace", most=_MAX_BYTES)
-    lines = [row for row in csv.reader(io.StringIO(text)) if row]
-    header = tuple(name.strip() for name in lines[0]) if lines else ()
+    reader = csv.reader(io.StringIO(text))
+    try:
+        lines = [(reader.line_num, cells) for cells in reader if cells]
+    except csv.Error as error:
+        raise UserError(f"{path}:{reader.line_num}: is no CSV: {error}") from error
+    header = tuple(name.strip() for name in lines[0][1]) if lines else ()
     if header not in (_COLUMNS, _COLUMNS[:3]):
         raise UserError(f"{path}:1: expected the header t,x,y or t,x,y,yaw")
     if not 2 <= len(lines) <= MAX_ROWS + 1:
         raise UserError(f"{path}: must have 1 to {MAX_ROWS} rows, got {len(lines) - 1}")
-    rows: list[list[float]] = []
-    for number, cells in enumerate(lines[1:], 2):
+    rows: list[Row] = []
+    for number, cells in lines[1:]:
         row = _numbers(cells, len(header))
         if row is None:
             raise UserError(f"{path}:{number}: expected {len(header)} numbers, {','.join(header)}")
-        if rows and row[0] <= rows[-1][0]:
-            raise UserError(
-                f"{path}:{number}: is out of order: t = {row[0]:g} s does not come after "
-                f"{rows[-1][0]:g} s"
-            )
-        rows.append(row)
+        try:
+            fits = _ROW.validate_python(row)
+        except ValidationError as error:
+            [at], first = error.errors()[0]["loc"], dict(error.errors()[0])
+            why = problem_of(first, (at,), ()).message
+            raise UserError(f"{path}:{number}: {_COLUMNS[int(at)]} {why}") from error
+        if rows and (why := _misstep(rows[-1], fits)):
+            raise UserError(f"{path}:{number}: {why}")
+        rows.append(fits)
     return rows
 
 

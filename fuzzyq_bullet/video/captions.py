@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.planning.decision import MODES
+from fuzzyq_bullet.recording.fault import at_fault, speeds_in_words
 from fuzzyq_bullet.recording.rules_turn import has_rules
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.explanation import reason, struck
@@ -165,7 +166,8 @@ class Story:
         if not over:
             return reason(self._trajectory, decision)
         if self._trajectory.collision is not None:
-            return f"Ran into {struck(self._trajectory)}"
+            hit_by = speeds_in_words(self._trajectory) and not at_fault(self._trajectory)
+            return f"{'Was hit by' if hit_by else 'Ran into'} {struck(self._trajectory)}"
         return _ENDINGS[self._trajectory.outcome]
 
 
@@ -178,7 +180,11 @@ def outcome_lines(trajectory: Trajectory) -> tuple[str, str]:
         title = f"{title} with {struck(trajectory)}"
     moves = ticks.position[1:] - ticks.position[:-1]
     length = float(np.hypot(moves[:, 0], moves[:, 1]).sum())
-    facts = [f"{'at' if hit else 'in'} {float(ticks.time[-1]):.1f} s", f"path {length:.1f} m"]
+    facts = [f"{'at' if hit else 'in'} {float(ticks.time[-1]):.1f} s"]
+    if speeds := speeds_in_words(trajectory):
+        facts.append(speeds)  # a long line; the path is the less important
+    else:
+        facts.append(f"path {length:.1f} m")
     closest = float(ticks.clearance.min())
     if closest < float("inf") and hit is None:
         facts.append(f"least clearance {max(closest, 0.0):.2f} m")
@@ -210,6 +216,6 @@ def outcome_card(
     sizes = style.scaled((40, 36, 32, 28, 26, 24, 22), unit)
     title, size = style.fitting(title, room, sizes, bold=True)
     paint.write(image, (wide / 2, 64 * unit), title, colour, size, bold=True, align="m")
-    figures, size = style.fitting(figures, room, style.scaled((26, 24, 22, 20), unit))
+    figures, size = style.fitting(figures, room, style.scaled((26, 24, 22, 20, 18), unit))
     paint.write(image, (wide / 2, 108 * unit), figures, style.TEXT, size, align="m")
     return DirtyRegion(place.x, place.y, image)

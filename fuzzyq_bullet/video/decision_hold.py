@@ -15,13 +15,16 @@ if TYPE_CHECKING:
 
 HOLD = 0.5
 """Least time that a decision is shown (s of video), unless what it means is no longer so."""
+_OTHER_WAY = math.radians(90.0)
+"""A robot that gives way and now turns farther than this (rad) gives way to another side."""
 
 
 class DecisionHold:
     """The decision shown at any time of a run; it depends on nothing but the time.
 
     Each is held for a while, then the one in force takes its place. Another mode, a turn to the
-    other side, something on a way that was clear, or that the robot gives way is shown at once.
+    other side, something on a way that was clear, or that the robot gives way, and to which side,
+    is shown at once.
 
     Args:
         trajectory: The run.
@@ -35,6 +38,7 @@ class DecisionHold:
         sides = [side_of(trajectory, k) for k in range(len(times))]
         clear = [is_clear(decisions, k) for k in range(len(times))]
         giving = [gives_way(trajectory, k) for k in range(len(times))]
+        ways = decisions.heading.tolist()
         self._last = len(times) - 1
         self._times: list[float] = []
         self._decisions: list[int] = []
@@ -45,6 +49,7 @@ class DecisionHold:
                 or sides[k] * sides[held] < 0
                 or (clear[held] and not clear[k])
                 or (giving[k] and not giving[held])
+                or (giving[k] and abs(math.remainder(ways[k] - ways[held], math.tau)) > _OTHER_WAY)
             )
             since = time if at_once else max(time, due)
             if since < until:

@@ -120,14 +120,18 @@ def is_clear(decisions: Decisions, index: int) -> bool:
 
 def struck(trajectory: Trajectory) -> str:
     """Return what the robot collided with, by kind and place; empty if it did not."""
-    hit = trajectory.collision
+    hit, scenario = trajectory.collision, trajectory.scenario
     if hit is None:
         return ""
     if hit.obstacle < 0:
         return "a wall"
-    obstacle = trajectory.scenario.obstacles[hit.obstacle]
-    x, y = (round(v, 1) + 0.0 for v in obstacle.position)
-    return f"the {obstacle.shape} at ({x:.1f}, {y:.1f})".replace("-", "−")
+    obstacle = scenario.obstacles[hit.obstacle]
+    what, place = f"the {obstacle.shape}", obstacle.position
+    if hit.obstacle in scenario.movers and trajectory.movers.size:
+        moved = trajectory.movers[-1, scenario.movers.index(hit.obstacle), :2]
+        what, place = f"the moving {obstacle.shape}", tuple(moved.tolist())
+    x, y = (round(v, 1) + 0.0 for v in place)
+    return f"{what} at ({x:.1f}, {y:.1f})".replace("-", "−")
 
 
 def _steers(trajectory: Trajectory, index: int) -> str:

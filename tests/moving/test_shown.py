@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from fuzzyq_bullet.recording.metrics import has_way
 from fuzzyq_bullet.recording.moving import headings_of, movers_csv, poses_at
 from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.video import style
+from fuzzyq_bullet.video.captions import Story, outcome_lines
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.explanation import reason
 from fuzzyq_bullet.video.map.map import Map
@@ -128,15 +130,33 @@ def test_the_sentence_says_what_comes() -> None:
     assert not told[-1].startswith("A moving obstacle")  # it goes back
 
 
+@pytest.mark.parametrize(
+    ("step", "words", "fault"), [(0.0, "Was hit by", "not at fault"), (0.4, "Ran into", "at fault")]
+)
+def test_the_end_says_what_moved_where_and_how_fast(step: float, words: str, fault: str) -> None:
+    there = disc(3.5, 2.0, "kind: patrol, points: [[3.5, 2], [0.5, 2]], speed: 0.5")
+    record = stand(room(there), 8.0, step=step)
+    x = record.movers[-1, 0, 0]
+    assert x < 3.0
+    what = f"the moving cylinder at ({x:.1f}, 2.0)"
+    assert Story(record).sentence(0, over=True) == f"{words} {what}"
+    title, figures = outcome_lines(record)
+    assert title == f"COLLISION with {what}"
+    assert re.search(rf"it moved at 0\.50 m/s, the robot at 0\.\d\d m/s: {fault}$", figures)
+
+
 def test_that_it_gives_way_is_shown_at_once(crossed: Trajectory) -> None:
     decisions = crossed.decisions
     target = decisions.target.copy()
     target[23:] = 4.0, 4.0  # a temporary goal
-    record = replace(crossed, decisions=replace(decisions, target=target))
-    time = float(record.ticks.time[decisions.tick[23]])
+    heading = decisions.heading.copy()
+    heading[25:] += 2.0  # and then one on the other side
+    heading[27:] += 1.0  # a little farther that way
+    record = replace(crossed, decisions=replace(decisions, target=target, heading=heading))
+    time = record.ticks.time[decisions.tick].tolist()
     timeline, hold = Timeline(record), DecisionHold(record)
-    assert hold.at(timeline.at(time - 0.01)) < 23
-    assert hold.at(timeline.at(time)) == 23
+    assert hold.at(timeline.at(time[23] - 0.01)) < 23
+    assert [hold.at(timeline.at(time[k])) for k in (23, 24, 25, 26, 27)] == [23, 23, 25, 25, 25]
 
 
 def test_csv_has_a_row_for_each_tick(crossed: Trajectory) -> None:

@@ -11,7 +11,13 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import Observation, RangeSensor
-from fuzzyq_bullet.planning.traffic.circle_fit import fit_circle
+from fuzzyq_bullet.planning.traffic.circle_fit import Circle, fit_circle
+from fuzzyq_bullet.planning.traffic.lidar_scan import (
+    SURFACE_TOLERANCE,
+    in_free_space,
+    lidar_scan,
+)
+from fuzzyq_bullet.planning.traffic.track import SPEED_TOLERANCE, TrackHistory
 from fuzzyq_bullet.planning.traffic.tracker import Tracker
 from fuzzyq_bullet.scenario import Box, Cylinder
 
@@ -19,14 +25,14 @@ PERIOD, RANGE, WIDE = 0.05, 1.0, 0.22
 angles = st.floats(-math.pi, math.pi)
 
 
-def reading(time, position, obstacles, noise=0.0, rng=None):
+def reading(time, position, obstacles, noise=0.0, rng=None, sees=RANGE):
     """Return what a robot at a position sees of obstacles at a time."""
     field = Field.of(obstacles)
 
     def look(headings):
-        free = field.free_distance(position, headings, 0.0, RANGE + WIDE)
+        free = field.free_distance(position, headings, 0.0, sees + WIDE)
         told = free + (rng.normal(0.0, noise, len(free)) if noise else 0.0)
-        return np.where(free < RANGE + WIDE, np.clip(told, 0.0, RANGE + WIDE), free)
+        return np.where(free < sees + WIDE, np.clip(told, 0.0, sees + WIDE), free)
 
     return Observation(
         time=time,
@@ -36,9 +42,9 @@ def reading(time, position, obstacles, noise=0.0, rng=None):
         turn_rate=0.0,
         goal=(50.0, 0.0),
         goal_radius=0.2,
-        range=RANGE,
+        range=sees,
         radius=WIDE,
-        sensor=RangeSensor(lambda headings: [RANGE] * len(headings), look),
+        sensor=RangeSensor(lambda headings: [sees] * len(headings), look),
         uncertainty=3.0 * noise,
         closing_speed=0.6,
     )
@@ -113,6 +119,16 @@ def test_what_stands_is_never_told_to_move(drives, own, noise, seed):
         assert not len(traffic.points)
 
 
+@pytest.mark.parametrize("sees", [1.0, 1.5])
+@given(st.floats(0.0, 0.5), st.floats(0.25, 0.5), st.floats(0.005, 0.05), st.floats(0.0, 0.03))
+def test_a_surface_is_not_in_free_space_however_noise_moves_it(sees, beyond, apart, beside, off):
+    # Rays that graze a wall pass close to it, and meet nothing behind it.
+    wall = Box(shape="box", position=(1.0, -1.0), size=(1.0, 2.0))
+    scan = lidar_scan(reading(0.0, (0.5 - apart, beside), [wall], sees=sees))
+    point = np.array([(0.5 + beyond, off)])
+    assert not in_free_space(scan, point, SURFACE_TOLERANCE + 2.0 * 0.03)[0]
+
+
 def test_what_has_just_come_into_sight_may_come_as_fast_as_was_said():
     traffic = Tracker().update(reading(0.0, (0.0, 0.0), [pillar(0.8, 0.0)]))
     assert len(traffic.points) > 5
@@ -154,3 +170,36 @@ def test_the_velocity_of_a_box_is_told_to_within_5_cm_a_second(way):
             assert math.hypot(*track.centre) - track.radius > at[0] - 0.15 - 0.05
     assert len(told) > 5
     assert np.median(told, axis=0) == pytest.approx(way, abs=0.05)
+
+
+def test_a_track_may_be_a_little_faster_than_fitted_but_not_beyond_the_limit() -> None:
+    track = TrackHistory(0.25, velocity=(0.3, 0.4))
+    assert track.max_speed(3.0) == pytest.approx(0.5 + SPEED_TOLERANCE)
+    assert track.max_speed(0.52) == 0.52
+    assert TrackHistory(0.25).max_speed(3.0) == 3.0
+
+
+def test_a_radius_that_changes_throws_earlier_centres_away() -> None:
+    def added(radius: float) -> TrackHistory:
+        track = TrackHistory(0.25)
+        for k in range(4):
+            track.add(0.05 * k, Circle((0.0, 0.02 * k), 0.25, fits=True), 0.015, 3.0)
+        track.add(0.2, Circle((0.0, 0.08), radius, fits=True), 0.015, 3.0)
+        return track
+
+    assert added(0.28).velocity == pytest.approx((0.0, 0.4))
+    assert added(0.30).velocity is None
+
+
+def test_a_fit_that_is_too_fast_is_no_velocity() -> None:
+    track = TrackHistory(0.25)
+    for k in range(4):
+        track.add(0.05 * k, Circle((0.0, 0.2 * k), 0.25, fits=True), 0.015, 3.0)
+    assert track.velocity is None
+
+
+def test_what_stands_behind_a_track_does_not_turn_it() -> None:
+    track = TrackHistory(0.25, velocity=(1.0, 0.0))
+    track.positions.append((0.0, 0.0, 0.0))
+    assert track.straight_for(np.array([[-1.0, 0.0]]), 0.0) == math.inf
+    assert track.straight_for(np.array([[-1.0, 0.0], [1.25, 0.0]]), 0.0) == pytest.approx(1.0)

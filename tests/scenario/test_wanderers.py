@@ -85,6 +85,7 @@ SPEEDS = "movers.speed: must be the least and the greatest speed (m/s), such as 
         ("{count: 2, speed: [.nan, 0.2]}", "movers.speed[0]: must be finite, got nan"),
         ("{radius: 0.2}", "movers.count: is required"),
         ("{count: 2, radius: 0}", "movers.radius: must be at least 0.02, got 0"),
+        ("{count: 2, radius: 6}", "movers.radius: must be less than 5 to fit, got 6"),
     ],
 )
 def test_mistakes_are_named(given, message):

@@ -383,7 +383,7 @@ def test_start_and_goal_are_given_to_worlds_that_have_none(folder: Path) -> None
     # Gazebo's worlds have no edge: the goal lies 10 m beyond the last thing that stands there.
     assert (world.goal.position, world.goal.radius) == ((0.0, 13.0), 1.0)
     assert (world.robot.model, world.robot.max_speed, world.sensor_range) == ("jackal", 2.0, 3.0)
-    assert stage.notes == ("left out in 1 worlds: lights: nothing to run into",)
+    assert stage.notes == ("left out in 1 world: lights: nothing to run into",)
 
 
 def test_a_job_brings_its_world_to_workers_that_have_no_such_file(folder: Path) -> None:

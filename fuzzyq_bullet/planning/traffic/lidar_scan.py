@@ -57,10 +57,13 @@ def in_free_space(earlier: LidarScan, points: Floats, tolerance: float) -> Flags
     """
     ray, distance = _ray_before(earlier, points)
     count = len(earlier.lengths)
-    off = (tolerance - SURFACE_TOLERANCE) / max(float(distance.min(initial=math.inf)), 1e-6)
-    more = min(math.ceil(off / (math.tau / count) - 1e-9), NEIGHBOURS)
-    beside = (ray[:, None] + np.arange(-more, more + 2)) % count
-    return np.asarray(distance < earlier.lengths[beside].min(axis=1) - tolerance)
+    off = (tolerance - SURFACE_TOLERANCE) / np.maximum(distance, 1e-6)  # an angle (rad)
+    more = np.minimum(np.ceil(off / (math.tau / count) - 1e-9), count // 4)
+    offsets = np.arange(-int(more.max(initial=0.0)), int(more.max(initial=0.0)) + 2)
+    beside = (offsets >= -more[:, None]) & (offsets <= more[:, None] + 1)
+    lengths = earlier.lengths[(ray[:, None] + offsets) % count]
+    nearest = np.where(beside, lengths, math.inf).min(axis=1)
+    return np.asarray(distance < nearest - tolerance)
 
 
 def on_surface(earlier: LidarScan, points: Floats, tolerance: float) -> Flags:

@@ -62,6 +62,13 @@ class Wanderers(Model):
             {"right": f"[{least:g}, {greatest:g}]", "value": shorten(value)},
         )
 
+    def conflicts(self, scenario: Scenario) -> list[tuple[str, str]]:
+        """Return what can be known to be impossible without drawing: keys, and messages."""
+        least = min(scenario.arena.size)
+        if self.count == 0 or 2.0 * self.radius < least:
+            return []
+        return [("radius", f"must be less than {least / 2:g} to fit, got {self.radius:g}")]
+
     def draw(
         self, scenario: Scenario, standing: Sequence[Obstacle], seed: int
     ) -> tuple[Cylinder, ...]:

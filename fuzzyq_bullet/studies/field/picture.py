@@ -36,7 +36,8 @@ def field_picture(lines: Sequence[Summary], about: str) -> Figure:
     axes = figure.subplots(3 if scored else 2, len(kinds), sharey=True, squeeze=False)
     for column, kind in enumerate(kinds):
         own = [line for line in lines if line.kind == kind]
-        axes[0][column].set_title(f"{kind}\n{own[0].fields} fields", fontsize=10, color=INK)
+        count = f"{own[0].fields} field{'' if own[0].fields == 1 else 's'}"
+        axes[0][column].set_title(f"{kind}\n{count}", fontsize=10, color=INK)
         for line in own:
             place = planners.index(line.planner)
             _success(axes[0][column], line, place)

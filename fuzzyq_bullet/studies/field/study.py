@@ -84,7 +84,10 @@ class AgainstField(Study):
             yield Stage("field", self._fields(told), planners)
             return
         found = worlds_in(self._asked(self.worlds))
-        notes = [f"left out in {count} worlds: {what}" for what, count in found.left_out.items()]
+        notes = [
+            f"left out in {count} world{'' if count == 1 else 's'}: {what}"
+            for what, count in found.left_out.items()
+        ]
         yield Stage(WORLDS, self._worlds(told, found), planners, tuple(notes))
 
     def _fields(self, planners: Mapping[str, Any]) -> FieldPlan:

@@ -183,7 +183,7 @@ def summary_table(lines: Sequence[Summary], about: str) -> Table:
         "drives the true shortest path under the same safety filter, with nothing moving and "
         "nothing disturbed.\n"
         "reached: of the fields that have a way, with Wilson's interval; contacts: in all fields; "
-        "at fault: contacts at which the robot moved. Of the runs that reached the goal: time over "
+        "at fault: those for which the robot was. Of the runs that reached the goal: time over "
         f"that of the bound, in the fields that both solved [95 %, of {FEWEST_PAIRS} and more]; "
         "driven over shortest path; smoothness as changes of direction for each metre (rad/m), and "
         "as the mean of |jerk|. decision: processor time, its rays included: median, and what 95 % "

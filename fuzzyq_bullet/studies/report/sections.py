@@ -139,13 +139,25 @@ def _plugins_of(found: Found, files: Mapping[str, str]) -> list[str]:
 
 def table(one: Table) -> Html:
     """Return a table, which scrolls by itself where the page is narrow."""
+    side = ["left" if i in one.left else None for i in range(len(one.columns))]
     lines = [
-        tag("tr", tag("th", cells[0], scope="row"), *(tag("td", _cell(text)) for text in cells[1:]))
+        tag(
+            "tr",
+            tag("th", cells[0], scope="row"),
+            *(
+                tag("td", _cell(text), class_=where)
+                for text, where in zip(cells[1:], side[1:], strict=True)
+            ),
+        )
         for cells in one.rows
     ]
+    heads = (
+        tag("th", name, scope="col", class_=where)
+        for name, where in zip(one.columns, side, strict=True)
+    )
     inner = tag(
         "table",
-        tag("thead", tag("tr", *(tag("th", name, scope="col") for name in one.columns))),
+        tag("thead", tag("tr", *heads)),
         tag("tbody", *lines),
         class_="total" if one.total else None,
         aria_label=one.caption,

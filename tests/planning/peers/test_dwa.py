@@ -79,6 +79,17 @@ def test_it_drives_faster_where_more_is_free():
     assert speeds[0] > speeds[1]
 
 
+def test_the_weight_of_the_clearance_leads_it_away_from_what_stands_beside_its_way():
+    post = Field(np.array([[0.9, 0.1, 0.1]]), np.empty((0, 5)), None)  # a little to the left
+    seen = moving(post, (0.0, 0.0), goal=(5.0, 0.0), speed=0.3)
+    blind, usual = (
+        DwaPlanner(settings).decide(seen).turn_rate
+        for settings in (DwaSettings(clearance=0.0), DwaSettings())
+    )
+    assert blind == 0.0
+    assert usual < -0.2  # to the right
+
+
 def test_where_no_arc_is_admissible_it_turns_on_the_spot_away_from_what_is_near():
     ahead = Field(np.array([[0.5, 0.05, 0.27]]), np.empty((0, 5)), None)
     twist = DwaPlanner(DwaSettings()).decide(moving(ahead, (0.0, 0.0), goal=(5.0, 0.0), speed=0.0))
