@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyq_bullet.fuzzy import definition_of
-from fuzzyq_bullet.planning.commands import COMMAND_FIELDS
 from fuzzyq_bullet.planning.controllers import controller_of
 from fuzzyq_bullet.planning.decision import MODES
 from fuzzyq_bullet.recording.moving import headings_of
 from fuzzyq_bullet.recording.rules_turn import asked, has_rules
+from fuzzyq_bullet.video.asked import asks
 from fuzzyq_bullet.video.captions import outcome_lines, planner_name, routine_name
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.explanation import aim_name, off_aim, reason
@@ -33,7 +33,7 @@ MOST_DECISIONS = 3000
 _DIGITS = {"heading": 4, "lines": 4, "near": 3, "side": 3, "rules": 3}
 """Decimals of the fields of a decision, where they are not three."""
 _FIELDS = (
-    "heading", "step", "reach", "mode", "lines", "lengths", "distance", "difference",
+    "heading", "step", "mode", "lines", "lengths", "distance", "difference",
     "near", "side", "rules", "turn", "stride", "weights", "breakout_at", "target", "aim",
 )  # fmt: skip
 
@@ -154,9 +154,7 @@ def _decisions(trajectory: Trajectory) -> dict[str, Any]:
         array = getattr(decisions, name)[kept]
         flat = array if array.ndim == 1 else array.reshape(len(kept), -1)
         table[name] = _numbers(flat, _DIGITS.get(name, 3))
-    for name in COMMAND_FIELDS:
-        if (asked_for := getattr(decisions, name)) is not None:
-            table[name] = _numbers(asked_for[kept], 3)
+    table["asks"] = [[*first, *second] for first, second in (asks(trajectory, k) for k in kept)]
     table["asked"] = [int(one) for one in asked(decisions)[kept]]
     table["off_aim"] = [_number(off_aim(trajectory, k), 4) for k in kept]
     table["aims_at"] = [aim_name(trajectory, k) for k in kept]

@@ -32,6 +32,8 @@ MAX_SIZE = 8192
 _AROUND = np.arange(16) * (math.tau / 16)
 _RIM, _LID = 0.004, 0.007
 """How far a robot may reach beyond its footprint, and above its lid (m)."""
+_NOSE = np.array([(0.62, 0.0), (-0.48, 0.5), (-0.24, 0.0), (-0.48, -0.5)])
+"""Outline of an arrow along x that fits into a circle of radius 1."""
 _LIGHT: dict[str, Any] = {
     "lightDirection": (-4.0, -6.0, 11.0),
     "lightColor": (1.0, 1.0, 1.0),
@@ -196,6 +198,7 @@ class RobotCamera:
         self._oversampling = oversampling
         self._engine = Engine()
         self._robot = VisibleRobot(self._engine, model)
+        self._nose = [add_mesh(self._engine, mesh) for mesh in _nose(model)]
         wide, tall = model.radius + _RIM, model.height + _LID
         # Points about the robot (m), base frame: a little wider than its disc, from wheels to lid.
         self._hull = np.array(
@@ -214,8 +217,15 @@ class RobotCamera:
         return (left, top, right, bottom) if right > left and bottom > top else None
 
     def shoot(self, window: Window, position: tuple[float, float], heading: float) -> Picture:
-        """Return what ``window`` shows of the robot; the mask holds 0 where it is."""
+        """Return what ``window`` shows of the robot; the mask is not negative where it is."""
         self._robot.place(position, heading)
+        for body in self._nose:
+            self._engine.api.resetBasePositionAndOrientation(
+                body,
+                (*position, 0.0),
+                (0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)),
+                physicsClientId=self._engine.client,
+            )
         return shoot(self._engine, self._lens, window, self._oversampling)
 
     def close(self) -> None:
@@ -227,6 +237,24 @@ class RobotCamera:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _nose(model: RobotModel) -> list[Mesh]:
+    """Return an arrow on top of a user's robot; those of the package have a mark of their own.
+
+    It is dark on a light rim, to be seen on a body of any colour.
+    """
+    if model.urdf_file in (None, FUZZYQ.urdf_file):
+        return []
+    return [
+        Mesh(
+            vertices=np.column_stack([_NOSE * size * model.radius, np.full(4, model.height + z)]),
+            normals=np.tile((0.0, 0.0, 1.0), (4, 1)),
+            triangles=np.array([(0, 1, 2), (0, 2, 3)]),
+            colour=colour,
+        )
+        for size, z, colour in ((0.85, _RIM / 2, (238, 238, 242)), (0.64, _RIM, (33, 36, 43)))
+    ]
 
 
 def add_mesh(engine: Engine, mesh: Mesh) -> int:

@@ -179,8 +179,10 @@ def _waits(trajectory: Trajectory, index: int, lean: float) -> str:
     if abs(float(trajectory.ticks.speed[tick])) > _SLOW:
         return "No room yet to turn so far: brakes first"
     facing = float(trajectory.ticks.heading[tick])
-    if abs(math.remainder(float(decisions.heading[index]) - facing, math.tau)) > _FACING:
-        return "No room for a wide turn: turns on the spot"
+    turn = math.remainder(float(decisions.heading[index]) - facing, math.tau)
+    if abs(turn) > _FACING:
+        degrees = f"{math.degrees(abs(turn)):.0f}°"  # from its nose; the dial's is from the aim
+        return f"No room for an arc: turns {degrees} {_side(turn)} on the spot"
     return "No room yet to turn so far: slows down" if held else ""
 
 

@@ -11,6 +11,7 @@ from fuzzyq_bullet.recording.moving import headings_of, poses_at
 from fuzzyq_bullet.shapes.motion import placed
 from fuzzyq_bullet.video import paint, style
 from fuzzyq_bullet.video.map.footprints import Floats, arrow
+from fuzzyq_bullet.video.timeline import jumps
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,7 +62,12 @@ class DrawnMovers:
         return len(self._solids)
 
     def at(self, time: float, tick: int) -> list[Drawn]:
-        """Return all of them at a time (s), whose last tick is given."""
+        """Return all of them at a time (s), whose last tick is given.
+
+        Beside a robot that jumps they are where they were at that tick, as the robot is.
+        """
+        if jumps(self._trajectory):
+            time = float(self._trajectory.ticks.time[tick])
         poses = poses_at(self._trajectory, time).tolist()
         drawn = []
         for k, (index, shape, outline, pieces) in enumerate(self._solids):

@@ -17,6 +17,8 @@ NO_DECISION = -1
 
 _LEAST_SHIFT = 0.4
 """A smaller shift (pixels) is not seen."""
+_ROUNDING = 1e-9
+"""Times that differ by less are the same (s)."""
 _LEAST_TURN = math.radians(0.7)
 
 
@@ -48,11 +50,16 @@ class Moment:
 
 
 class Timeline:
-    """A record, asked by time. It holds nothing that grows with the record but the record."""
+    """A record, asked by time. It holds nothing that grows with the record but the record.
+
+    Wheels roll from tick to tick. The point robot of the kinematic drive jumps: until its next tick
+    it stands where it decided.
+    """
 
     def __init__(self, trajectory: Trajectory) -> None:
         self._ticks = trajectory.ticks
         self._decisions = trajectory.decisions
+        self._jumps = jumps(trajectory)
         self.start = float(self._ticks.time[0])
         self.end = float(self._ticks.time[-1])
 
@@ -60,11 +67,13 @@ class Timeline:
         """Return the moment at a time (s), which is moved to the nearest one of the record."""
         ticks = self._ticks
         time = min(max(time, self.start), self.end)
+        if self._jumps:  # at a tick it has jumped, however the two times were rounded
+            time = min(time + _ROUNDING, self.end)
         last = len(ticks.time) - 1
         tick = int(np.searchsorted(ticks.time, time, side="right")) - 1
         after = min(tick + 1, last)
         span = float(ticks.time[after] - ticks.time[tick])
-        part = (time - float(ticks.time[tick])) / span if span > 0.0 else 0.0
+        part = (time - float(ticks.time[tick])) / span if span > 0.0 and not self._jumps else 0.0
 
         (x0, y0), (x1, y1) = ticks.position[tick].tolist(), ticks.position[after].tolist()
         turn = math.remainder(float(ticks.heading[after] - ticks.heading[tick]), math.tau)
@@ -77,6 +86,11 @@ class Timeline:
             clearance=_between(ticks.clearance, tick, after, part),
             decision=int(np.searchsorted(self._decisions.tick, tick, side="right")) - 1,
         )
+
+
+def jumps(trajectory: Trajectory) -> bool:
+    """Whether the robot is nowhere between two ticks: the point robot of the kinematic drive."""
+    return trajectory.scenario.drive == "kinematic"
 
 
 class Steady:

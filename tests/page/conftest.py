@@ -9,9 +9,11 @@ from typing import TypeAlias
 import numpy as np
 import pytest
 
+from fuzzyq_bullet import episode, with_options
 from fuzzyq_bullet.fuzzy import ControllerDefinition, paper_definition
 from fuzzyq_bullet.page import lesson_page, record_page
 from fuzzyq_bullet.recording.trajectory import Trajectory
+from fuzzyq_bullet.scenario import load_scenario
 from tests.helpers import synthetic
 from tests.helpers.browser import CHROMIUM, Browser, browsing
 
@@ -37,6 +39,7 @@ def pages(
     """Pages by name: of one or two records, of a planner without rules, and two lessons."""
     folder = tmp_path_factory.mktemp("pages")
     plain = synthetic.drive(seconds=5.0, explained=False)
+    jumping = episode.run(with_options(load_scenario("boxes"), drive="kinematic"))
     told = paper_definition().model_dump(mode="json")
     for name, variable in told["inputs"].items():
         variable["sets"] = {f"{one}_{name}"[:16]: how for one, how in variable["sets"].items()}
@@ -46,6 +49,7 @@ def pages(
         "one": record_page([drive]),
         "two": record_page([drive, crash]),
         "plain": record_page([plain]),
+        "jumps": record_page([jumping]),
         "lesson": lesson_page(),
         "wordy": lesson_page(wordy),
     }

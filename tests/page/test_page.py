@@ -172,7 +172,7 @@ def test_a_planner_without_rules_and_lines_shows_what_it_has_and_nothing_empty(s
     assert texts(".card h3") == ["1 · Senses", "2 · Acts"]
     assert said(browser, ".mode") == "improved-fuzzy"
     assert texts(".legend li") == ["path"]
-    assert texts(".acts dt")[:2] == ["step asked", "known free"]
+    assert texts(".acts dt")[:2] == ["speed asked", "known free"]
     # The close-up has a robot, an arrow and a ring, in more than one colour.
     colours = browser.value(
         "(() => { const one = document.querySelector('.around canvas');"
@@ -183,7 +183,28 @@ def test_a_planner_without_rules_and_lines_shows_what_it_has_and_nothing_empty(s
     browser = show("one")
     assert [*map(str.strip, texts(".legend li"))][-3:] == ["routine", "breakout", "following"]
     assert texts(".card h3")[0] == "1 · Senses"
-    assert texts(".acts dt")[:2] == ["step asked", "known free"]
+    assert texts(".acts dt")[:2] == ["speed asked", "known free"]
+
+
+@pytest.mark.slow
+def test_the_point_robot_stands_where_it_decided_and_says_what_it_jumps(show: Open) -> None:
+    browser = show("jumps")
+    here, jumped = 6 * 2.0 / 3.0, 7 * 2.0 / 3.0
+    for time in (here + 0.01, here + 0.6):
+        browser.value(f"fuzzyq.player.seek({time})")
+        moment = browser.value("fuzzyq.views[0].moment")
+        decision = browser.value("fuzzyq.views[0].decision")
+        assert moment["tick"] == decision["index"] == 6
+        assert (moment["x"], moment["y"]) == (decision["x"], decision["y"])
+    names = "[...document.querySelectorAll('.acts dt')].map((one) => one.textContent)"
+    values = "[...document.querySelectorAll('.acts dd')].map((one) => one.textContent)"
+    told = ["step asked", "known free", "last step", "nearest in step"]
+    assert browser.value(names)[:4] == told
+    asked = browser.value(values)[0]
+    browser.value(f"fuzzyq.player.seek({jumped + 0.01})")
+    step, free, last, _ = browser.value(values)[:4]
+    assert last == asked  # what was asked for then is what it has jumped now
+    assert float(step[:-2]) <= float(free.strip("> m")) <= 1.0
 
 
 # Mouse, touch and keys

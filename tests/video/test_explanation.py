@@ -133,10 +133,12 @@ def test_a_turn_that_the_filter_holds_back_is_not_called_the_controllers(
     blocked: dict[str, Any] = {"lengths": (0.4, 0.3, 0.9), "distance": 1.5, "difference": -2.5}
     held = {"heading": 0.6, "turn": -1.0, **blocked, **more}
     assert moving(0.6, **held) == "No room yet to turn so far: brakes first"
-    assert moving(0.0, **held) == "No room for a wide turn: turns on the spot"
+    assert moving(0.0, **held) == "No room for an arc: turns 34° left on the spot"
     stopped = {"heading": -0.6, **blocked, **more, "reach": 0.0}
     assert moving(0.6, **stopped) == "No room yet to turn so far: brakes first"
-    assert moving(0.0, **stopped) == "No room for a wide turn: turns on the spot"
+    # How far is counted from its nose, not from the aim as on the dial.
+    assert moving(0.0, **stopped) == "No room for an arc: turns 34° right on the spot"
+    assert moving(0.0, -0.5, **stopped) == "No room for an arc: turns 6° right on the spot"
     assert moving(0.6, **{**stopped, "reach": 0.1}).startswith("Right is freer")
 
 

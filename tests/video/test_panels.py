@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,13 +14,14 @@ from fuzzyq_bullet.learning import load_policy
 from fuzzyq_bullet.planning import FuzzyQLambdaSettings
 from fuzzyq_bullet.planning.fuzzy_q_lambda import weights_of
 from fuzzyq_bullet.planning.policies import shipped
-from fuzzyq_bullet.scenario import random_task, realise
+from fuzzyq_bullet.scenario import load_scenario, random_task, realise
 from fuzzyq_bullet.video import paint
+from fuzzyq_bullet.video.asked import asks, metres
 from fuzzyq_bullet.video.captions import routine_name
 from fuzzyq_bullet.video.compositor import Compositor, closing
 from fuzzyq_bullet.video.decision_hold import DecisionHold
 from fuzzyq_bullet.video.panels.rules import rule_weights
-from fuzzyq_bullet.video.timeline import Timeline
+from fuzzyq_bullet.video.timeline import Timeline, sensor_range
 from tests.helpers.synthetic import drive, scenario
 
 if TYPE_CHECKING:
@@ -82,13 +84,82 @@ def test_every_panel_names_the_same_aim(
     assert not any("ahead" in text for text in shown)
 
 
-def test_a_step_is_called_asked_and_what_is_free_stands_beside_it(
-    run: Trajectory, monkeypatch: pytest.MonkeyPatch
+def asked(run: Trajectory, **columns: Any) -> list[tuple[str, str]]:
+    """Return what the first decision asks for, with such numbers."""
+    return list(asks(facts(run, **columns), 0))
+
+
+def test_what_is_asked_and_known_free_is_of_one_decision_and_bounded(run: Trajectory) -> None:
+    # The wheels drive the longest step (0.4 m) at full speed (0.6 m/s); no hall is 12 m long.
+    speed, free = asked(run, step=12.1, reach=0.0, guard=0.77)
+    assert speed == ("speed asked", "0.60 m/s")
+    # A robot that must turn on the spot first has a reach of 0; what it found free is not 0.
+    assert free == ("known free", "0.77 m")
+    assert asked(run, step=0.1, reach=0.5, guard=1.0) == [
+        ("speed asked", "0.15 m/s"),
+        ("known free", "> 1.00 m"),  # as far as it sees, as panel 1 says of its lines
+    ]
+
+
+def test_a_jump_is_asked_in_metres_and_is_no_longer_than_what_is_known_free() -> None:
+    record = episode.run(with_options(load_scenario("boxes"), drive="kinematic"))
+    facts_of, far = record.decisions, sensor_range(record)
+    assert facts_of.reach.max() > 2.0 * far  # it is no distance that anyone saw
+    for index in range(len(facts_of.tick)):
+        (name, step), (beside, free) = asks(record, index)
+        assert (name, beside) == ("step asked", "known free")
+        length, room = (float(text.strip("> m")) for text in (step, free))
+        assert length <= room <= round(far, 2)
+        before, after = record.ticks.position[facts_of.tick[index] : facts_of.tick[index] + 2]
+        assert length == pytest.approx(math.dist(before, after), abs=0.006)
+
+
+def test_what_no_filter_found_free_is_not_called_known(run: Trajectory) -> None:
+    nothing = {"step": 0.1, "guard": np.nan}
+    assert asked(run, reach=np.inf, **nothing)[1] == ("known free", "not checked")
+    # The way to the goal is a limit of planners without the filter, too.
+    assert asked(run, reach=8.59, **nothing)[1] == ("stops within", "8.59 m")
+    point = replace(run, scenario=run.scenario.model_copy(update={"drive": "kinematic"}))
+    assert asked(point, reach=8.59, **nothing)[1] == ("known free", "–")
+
+
+@pytest.mark.parametrize(("backward", "speed"), [(0.0, -0.2), (1.0, 0.2)])
+def test_a_robot_that_rolls_the_other_way_has_sensed_nothing(
+    run: Trajectory, backward: float, speed: float
 ) -> None:
-    shown = texts(facts(run, step=6.96, reach=0.42), monkeypatch)
-    assert shown >= {"step asked", "6.96 m", "known free", "0.42 m"}
-    assert "step" not in shown
-    assert texts(facts(run, step=12.34, reach=np.inf), monkeypatch) >= {"12.3 m", "not checked"}
+    stops = facts(run, step=0.1, reach=0.0, guard=0.0, backward=backward)
+    rolls = replace(stops, ticks=replace(stops.ticks, speed=np.full_like(stops.ticks.speed, speed)))
+    assert asks(rolls, 0)[1] == ("known free", "not checked")
+    sign = "−" if backward else ""
+    stands = asks(stops, 0)
+    assert stands == (("speed asked", f"{sign}0.15 m/s"), ("known free", "0.00 m"))
+
+
+def test_panel_4_shows_what_is_asked_for(run: Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = texts(facts(run, step=6.96, guard=0.42), monkeypatch)
+    assert shown >= {"speed asked", "0.60 m/s", "known free", "0.42 m", "nearest thing"}
+    assert not shown & {"step asked", "last step"}
+
+
+@pytest.mark.parametrize("explained", [True, False])
+def test_a_robot_that_jumps_has_no_speed(explained: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    planner = "fuzzy-q-lambda" if explained else "tangent-bug"
+    task = with_options(load_scenario("boxes"), drive="kinematic", planner=planner)
+    record = episode.run(task)
+    shown = texts(record, monkeypatch, over=True)
+    last = record.ticks.position[-2:]
+    assert shown >= {"last step", f"{math.dist(*last):.2f} m", "nearest in step"}
+    assert not shown & {"speed", "speed asked", "nearest thing", "turning"}
+    assert ("turned" in shown) != explained
+
+
+def test_a_nothing_has_no_sign(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert [metres(one) for one in (-0.004, 0.004, -0.01)] == ["0.00 m", "0.00 m", "−0.01 m"]
+    blank = drive(scenario(4, 0), seconds=1.0, outcome="timeout", explained=False)
+    touching = np.full_like(blank.ticks.clearance, -1e-4)
+    shown = texts(replace(blank, ticks=replace(blank.ticks, clearance=touching)), monkeypatch)
+    assert "nearest thing 0.00 m" in shown
+    assert not any("-0" in text or "−0.00" in text for text in shown)
 
 
 @pytest.mark.parametrize(("rate", "words"), [(0.5, "29°/s left"), (-0.5, "29°/s right")])

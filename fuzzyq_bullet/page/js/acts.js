@@ -5,18 +5,14 @@ import { fixed, html, say, set, svg, turning, weight } from "./dom.js";
 const CENTRE = [90, 84];
 const RADIUS = 66;
 const MEANINGS = {
-  step: "what the planner asks for; the robot brakes for what is not known to be free",
-  reach: "how far the way is known to be free",
+  "speed asked": "what the planner asks for; the robot brakes for what is not known to be free",
+  "step asked": "how far the robot is to jump",
+  "known free": "how far the way ahead was found free when it decided",
+  "stops within": "the distance within which the robot could stop",
   w1: "weight in force of the step",
   w2: "weight in force of the turn",
   c_f: "with less than this free towards the goal, the robot breaks out",
 };
-
-/** Return a turn rate (rad/s, left is positive) in words. */
-function turnRate(rate) {
-  const degrees = Math.round((Math.abs(rate) * 180) / Math.PI);
-  return degrees < 1 ? "straight on" : `${degrees}°/s ${rate > 0 ? "left" : "right"}`;
-}
 
 /** A dial: up is the aim, the needle where the robot heads. */
 export class Dial {
@@ -53,6 +49,12 @@ export class Acts {
     this.turn = html("b");
     this.aim = html("span");
     this.facts = {};
+    // What each decision asks for, in the film's words; their names may differ, too.
+    const [first, , second] = run.decisions.asks[0];
+    this.asks = [first, second].map((text) => {
+      const [name, value] = [html("dt", {}, text), html("dd", {}, "–")];
+      return { name, value, row: html("div", {}, name, value) };
+    });
     const { weights, breakout_at: limits } = run.decisions;
     const weighted = weights.some(([w1]) => w1 !== null);
     const fact = (name, text, told = true) => {
@@ -68,12 +70,9 @@ export class Acts {
       html(
         "dl",
         {},
-        fact("step", "step asked", !run.twists),
-        fact("reach", "known free", !run.twists),
-        fact("fast", "speed asked", run.twists),
-        fact("rate", "turn asked", run.twists),
-        fact("speed", "speed"),
-        fact("clearance", "nearest"),
+        ...this.asks.map(({ row }) => row),
+        fact("speed", run.jumps ? "last step" : "speed"),
+        fact("clearance", run.jumps ? "nearest in step" : "nearest"),
         fact("w1", "ω1 · step", weighted),
         fact("w2", "ω2 · turn", weighted),
         fact("c_f", "c_f", limits.some(Number.isFinite)),
@@ -81,20 +80,27 @@ export class Acts {
     );
   }
 
+  /** Return how far the robot last jumped, in words. */
+  lastStep({ tick }) {
+    const { x, y } = this.run.ticks;
+    const before = Math.max(tick - 1, 0);
+    return `${fixed(Math.hypot(x[tick] - x[before], y[tick] - y[before]))} m`;
+  }
+
   show(moment, decision) {
-    say(this.facts.speed, `${fixed(Math.abs(moment.speed))} m/s`);
+    say(this.facts.speed, this.run.jumps ? this.lastStep(moment) : `${fixed(Math.abs(moment.speed))} m/s`);
     say(this.facts.clearance, moment.clearance === null ? "far away" : `${fixed(Math.max(moment.clearance, 0))} m`);
     this.dial.element.classList.toggle("blank", !decision);
     if (!decision) return;
     this.dial.show(decision.off_aim, decision.step / this.longest);
     say(this.turn, turning(decision.off_aim));
     say(this.aim, ` ${Math.abs(decision.off_aim) < 0.0087 ? "to" : "of"} ${decision.aims_at}`);
-    const { step, reach, fast, rate } = this.facts;
-    const there = (number, words) => (number === null ? "–" : words(number));
-    if (step) say(step, `${fixed(decision.step)} m`);
-    if (reach) say(reach, decision.reach === null ? "not checked" : `${fixed(decision.reach)} m`);
-    if (fast) say(fast, there(decision.twist_speed, (speed) => `${fixed(speed)} m/s`));
-    if (rate) say(rate, there(decision.twist_turn_rate, turnRate));
+    this.asks.forEach(({ name, value, row }, k) => {
+      const [named, told] = decision.asks.slice(2 * k);
+      say(name, named);
+      say(value, told);
+      set(row, { title: MEANINGS[named] ?? "" });
+    });
     const { w1, w2, c_f: limit } = this.facts;
     if (w1) say(w1, weight(decision.weights[0]));
     if (w2) say(w2, weight(decision.weights[1]));

@@ -21,7 +21,7 @@ export function drawMovers(pen, field, moment) {
   const colour = colours();
   pen.lineJoin = pen.lineCap = "round";
   for (const mover of field.run.data.movers ?? []) {
-    const there = poseOf(mover, field.run.ticks.time, moment);
+    const there = poseOf(mover, moment);
     const [cos, sin] = [Math.cos(there.turn), Math.sin(there.turn)];
     const corners = mover.corners.map(([x, y]) =>
       field.at(there.x + x * cos - y * sin, there.y + x * sin + y * cos));
@@ -43,10 +43,8 @@ export function drawMovers(pen, field, moment) {
 }
 
 /** Return where a moving obstacle is at an instant, between two ticks. */
-export function poseOf(mover, times, moment) {
-  const i = moment.tick;
-  const j = Math.min(i + 1, times.length - 1);
-  const part = j > i ? (moment.time - times[i]) / (times[j] - times[i]) : 0;
+export function poseOf(mover, { tick: i, part }) {
+  const j = Math.min(i + 1, mover.x.length - 1);
   const between = (values) => values[i] + (values[j] - values[i]) * part;
   return { x: between(mover.x), y: between(mover.y), turn: between(mover.turn) };
 }

@@ -24,22 +24,23 @@ export class Run {
     this.end = this.ticks.time[this.ticks.time.length - 1];
     this.heldTimes = data.held.map(([time]) => time);
     this.unit = data.robot.radius; // S_p (m)
-    const { lines, twist_speed: twists } = data.decisions;
+    const { lines } = data.decisions;
     this.lined = lines.some(known); // whether its planner casts detection lines
-    this.twists = Boolean(twists?.some(Number.isFinite)); // whether it asks for twists
+    this.jumps = data.drive === "kinematic"; // whether it is nowhere between two ticks
   }
 
-  /** Return the robot at a time (s): pose, speed, room, and whether the run is over. */
+  /** Return the robot at a time (s): pose, speed, room, tick, and whether the run is over. */
   at(time) {
     const { time: times, x, y, heading, speed, clearance } = this.ticks;
     const now = Math.min(Math.max(time, this.start), this.end);
     const i = Math.max(lastNotAfter(times, now), 0);
     const j = Math.min(i + 1, times.length - 1);
-    const part = j > i ? (now - times[i]) / (times[j] - times[i]) : 0;
+    const part = j > i && !this.jumps ? (now - times[i]) / (times[j] - times[i]) : 0;
     const between = (values) => values[i] + (values[j] - values[i]) * part;
     return {
       time: now,
       tick: i,
+      part, // of the way to the next tick
       x: between(x),
       y: between(y),
       heading: between(heading),

@@ -9,11 +9,11 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from fuzzyq_bullet.video import paint, style
-from fuzzyq_bullet.video.asked import asks, turning
+from fuzzyq_bullet.video.asked import asks, metres, nearest, turning
 from fuzzyq_bullet.video.explanation import aim_name, off_aim, target_of
 from fuzzyq_bullet.video.panels.base import Canvas, register_panel
 from fuzzyq_bullet.video.style import ACTION
-from fuzzyq_bullet.video.timeline import NO_DECISION, Moment
+from fuzzyq_bullet.video.timeline import NO_DECISION, Moment, jumps
 
 if TYPE_CHECKING:
     from fuzzyq_bullet.recording.trajectory import Trajectory
@@ -45,9 +45,10 @@ class Action:
         self._goal = trajectory.scenario.goal.position
         card = canvas.image
         card.paste(style.LINE, mask=paint.mask((0, 0, *ACTION.size), _dial_face))
-        last = "" if self._weighted else "turning"
+        self._jumps = jumps(trajectory)
+        last = "" if self._weighted else ("turned" if self._jumps else "turning")
         far = "to next target" if trajectory.scenario.via else "distance to goal"
-        names = ("speed", far, "nearest thing", last)
+        names = ("last step" if self._jumps else "speed", far, nearest(trajectory), last)
         for row, name in enumerate(names):
             paint.write(card, (_FACTS, 40 + _ROW * row), name, style.MUTED, 16)
         if self._weighted:
@@ -69,9 +70,9 @@ class Action:
         target = self._goal if index == NO_DECISION else target_of(self._trajectory, index)[1]
         away = math.dist(moment.position, target)
         facts = (
-            f"{abs(moment.speed):.2f} m/s",
+            self._driven(moment),
             f"{away:.2f} m" if away < 100 else f"{away:.0f} m",
-            _metres(moment.clearance),
+            metres(moment.clearance) if math.isfinite(moment.clearance) else "far away",
             self._last_row(index, moment.tick),
         )
         if moment.over and self._trajectory.outcome == "goal":
@@ -87,8 +88,18 @@ class Action:
             _write_asked(image, _DECIDED, asked)
             self._canvas.paste(image, _DECIDED[:2])
 
+    def _driven(self, moment: Moment) -> str:
+        """Return how fast the robot drives; of one that jumps, how far it last jumped."""
+        if not self._jumps:
+            return f"{abs(moment.speed):.2f} m/s"
+        positions = self._trajectory.ticks.position
+        return metres(math.dist(positions[max(moment.tick - 1, 0)], positions[moment.tick]))
+
     def _last_row(self, index: int, tick: int) -> str | tuple[str, ...]:
-        """Return the weights in force and c_f; without weights, how fast the robot turns."""
+        """Return the weights in force and c_f; without weights, how the robot turns."""
+        if not self._weighted and self._jumps:
+            now, before = self._trajectory.ticks.heading[[tick, max(tick - 1, 0)]].tolist()
+            return _turned(math.remainder(now - before, math.tau), "straight on")
         if not self._weighted:
             return turning(float(self._trajectory.ticks.turn_rate[tick]))
         if index == NO_DECISION:
@@ -115,13 +126,6 @@ def _write_asked(image: Image.Image, box: paint.Box, asked: tuple[tuple[str, str
         text, size = style.fitting(value, room, (19, 17, 15), bold=True)
         right = (_FACTS - 12 - box[0], y - box[1])
         paint.write(image, right, text, style.TEXT, size, bold=True, align="r")
-
-
-def _metres(clearance: float) -> str:
-    """Return a clearance (m) in words; an overlap of nothing is nothing."""
-    if not math.isfinite(clearance):
-        return "far away"
-    return f"{round(clearance, 2) + 0.0:.2f} m".replace("-", "−")
 
 
 def _weight(number: float) -> str:
@@ -161,11 +165,16 @@ def _draw_turn(image: Image.Image, box: paint.Box, turn: float, name: str) -> No
 
     paint.stamp(image, box, around, 4, style.LEFT if turn > 0 else style.RIGHT, sweep)
     paint.stamp(image, box, around, 4, style.TEXT, needle)
-    degrees = round(math.degrees(abs(turn)))
-    text = "straight" if degrees < 1 else f"{degrees}° {'left' if turn > 0 else 'right'}"
+    text = _turned(turn, "straight")
     paint.write(image, (x - box[0], 142 - box[1]), text, style.TEXT, 24, bold=True, align="m")
-    below = (x - box[0], 161 - box[1])
-    paint.write(image, below, f"{'to' if degrees < 1 else 'of'} {name}", style.MUTED, 16, align="m")
+    below, of = (x - box[0], 161 - box[1]), "to" if text == "straight" else "of"
+    paint.write(image, below, f"{of} {name}", style.MUTED, 16, align="m")
+
+
+def _turned(turn: float, straight: str) -> str:
+    """Return an angle (rad) in words, ``straight`` if it is none."""
+    degrees = round(math.degrees(abs(turn)))
+    return straight if degrees < 1 else f"{degrees}° {'left' if turn > 0 else 'right'}"
 
 
 def _dial_face(pen: ImageDraw.ImageDraw, at: paint.Scaled) -> None:

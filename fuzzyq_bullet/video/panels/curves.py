@@ -14,6 +14,7 @@ import numpy as np
 
 from fuzzyq_bullet.recording.rules_turn import has_rules
 from fuzzyq_bullet.video import style
+from fuzzyq_bullet.video.asked import metres, nearest
 from fuzzyq_bullet.video.explanation import aim_name, off_aim
 from fuzzyq_bullet.video.panels.base import Canvas, Panel, register_panel
 from fuzzyq_bullet.video.panels.fuzzification import Fuzzification
@@ -126,7 +127,7 @@ def clearances(trajectory: Trajectory, canvas: Canvas) -> Curve:
 
     def words(index: int) -> str:
         far = not math.isfinite(near[index])
-        return "nothing near" if far else f"nearest thing {near[index]:.2f} m"
+        return "nothing near" if far else f"{nearest(trajectory)} {metres(near[index])}"
 
     marks = ((_MOST_ROOM, f"{_MOST_ROOM:g} m"), (_MOST_ROOM / 2, "0.5 m"), (0.0, "touch"))
     return Curve(canvas, ticks.time[tick], near, Scale(0.0, _MOST_ROOM, marks), words)
