@@ -293,7 +293,7 @@ def test_other_files_are_no_records(inside: Call, filmed: Path, tmp_path: Path) 
     with array.open("wb") as stream:
         np.save(stream, np.arange(3))
     assert "damaged" in refusal(array)
-    assert "damaged" in refused(inside, "replay", filmed / "short.mp4")
+    assert "is a video, not a record" in refused(inside, "replay", filmed / "short.mp4")
 
 
 def test_nothing_in_a_record_is_executed(filmed: Path, tmp_path: Path) -> None:
