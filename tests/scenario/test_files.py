@@ -79,6 +79,13 @@ def test_the_least_scenario_is_read_with_defaults():
         ("arena: {size: [10.0, -.inf]}", "x.yaml:4: arena.size[1]: must be finite, got -inf"),
         ("arena: {size: [10.0, 0]}", "x.yaml:4: arena.size[1]: must be more than 0, got 0"),
         ("arena: {walls: yes}", "x.yaml:4: arena.walls: expected true or false, got 'yes'"),
+        ("arena: [9, 9]", "x.yaml:4: arena: expected a mapping (key: value), got [9, 9]; "
+         "write {size: [9, 9]}"),
+        ("via: [[5, 2]]", "x.yaml:4: via[0]: expected a mapping (key: value), got [5, 2]; "
+         "write {position: [5, 2]}"),
+        ("robot: jackal", "x.yaml:4: robot: expected a mapping (key: value), got 'jackal'; "
+         "write {model: jackal}"),
+        ("arena: [a, b]", "x.yaml:4: arena: expected a mapping (key: value), got ['a', 'b']"),
         ("arena:", "x.yaml:4: arena: expected a mapping (key: value), got nothing"),
         ("seed: 1.5", "x.yaml:4: seed: expected a whole number, got 1.5"),
         ("seed: true", "x.yaml:4: seed: expected a whole number, got true"),
