@@ -421,6 +421,22 @@ def test_a_record_that_cannot_be_read_is_a_mistake_and_the_scenario_runs(
     assert "error: check-record.json: not a record of fuzzyq check --record" in done.stderr
 
 
+def test_what_cannot_be_recorded_is_told_before_anything_is_driven(
+    inside: Call, tmp_path: Path
+) -> None:
+    lane = LANE.format(name="lane", y=1.6).replace("{name: bad, how: straight}", "fuzzy")
+    (tmp_path / "lane.yaml").write_text(lane)
+    record = tmp_path / "check-record.json"
+    record.mkdir()
+    with pytest.raises(UserError, match=r"check-record\.json: cannot be written: there is a folder"):
+        inside("check", ".", "--record", cwd=tmp_path)
+    record.rmdir()
+    record.write_text("{")
+    with pytest.raises(UserError, match=r"check-record\.json: not a record of fuzzyq check"):
+        inside("check", ".", "--record", cwd=tmp_path)
+    assert record.read_text() == "{"
+
+
 def test_a_bundled_scenario_is_not_recorded_into_the_installation(
     inside: Call, tmp_path: Path
 ) -> None:
