@@ -428,7 +428,9 @@ def test_what_cannot_be_recorded_is_told_before_anything_is_driven(
     (tmp_path / "lane.yaml").write_text(lane)
     record = tmp_path / "check-record.json"
     record.mkdir()
-    with pytest.raises(UserError, match=r"check-record\.json: cannot be written: there is a folder"):
+    with pytest.raises(
+        UserError, match=r"check-record\.json: cannot be written: there is a folder"
+    ):
         inside("check", ".", "--record", cwd=tmp_path)
     record.rmdir()
     record.write_text("{")
