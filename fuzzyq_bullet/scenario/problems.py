@@ -48,6 +48,9 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
         problem = _problem(dict(item), data)
         if problem.loc not in found or is_short_list(dict(item)):
             found[problem.loc] = problem
+    for *motion, key in list(found):
+        if key == "file":  # of a trace, whose rows are missing for that reason alone
+            found.pop((*motion, "poses"), None)
     return list(found.values())
 
 
