@@ -111,7 +111,7 @@ def _in_words(error: typer.BadParameter) -> str:
     cause = error.__cause__
     if not isinstance(cause, ValidationError):
         return error.message
-    first = dict(cause.errors(include_url=False)[0])
+    first: dict[str, Any] = dict(cause.errors(include_url=False)[0])
     if {"ge", "gt", "le", "lt"} & first.get("ctx", {}).keys():  # a number, though given as text
         number = float(first["input"])
         first["input"] = int(number) if number.is_integer() else number

@@ -176,7 +176,7 @@ def _asked(study: type[Study], given: dict[str, Any]) -> Study:
     try:
         return study(**given)
     except ValidationError as error:
-        first = dict(error.errors(include_url=False)[0])
+        first: dict[str, Any] = dict(error.errors(include_url=False)[0])
         name = str(first["loc"][0]).replace("_", "-") if first["loc"] else study.name
         told = problem_of(first, tuple(first["loc"]), ()).message
         raise UserError(f"--{name}: {told}") from error

@@ -112,7 +112,7 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
 
 def _as_mapping(loc: Loc, value: Any) -> str:
     """Return how a value that stands alone is written as the mapping that belongs there."""
-    key = _ALONE.get(loc[0]) if len(loc) == 1 or loc[0] == "via" else None
+    key = _ALONE.get(str(loc[0])) if len(loc) == 1 or loc[0] == "via" else None
     if key is None:
         return ""
     if key in ("position", "size"):
