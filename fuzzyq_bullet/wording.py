@@ -26,7 +26,10 @@ def shorten(value: Any) -> str:
             return "[" + ", ".join(shorten(v) for v in value) + "]"
         case _ if hasattr(value, "model_fields"):
             return f"a {type(value).__name__}"
-    text = repr(value[:80]) if isinstance(value, str) else repr(value)
+    try:
+        text = repr(value[:80]) if isinstance(value, str) else repr(value)
+    except Exception:  # even that may fail
+        return f"a {type(value).__name__}"
     return text if len(text) <= 60 else f"{text[:56]} ..."
 
 

@@ -34,4 +34,4 @@ class Swing(Motion):
 
         It may be left out: then the motion is looked at for a minute, 20 times a second.
         """
-        return obstacle.extent() * self.angle * math.tau / self.period
+        return obstacle.extent() * abs(self.angle) * math.tau / self.period

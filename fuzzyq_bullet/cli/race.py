@@ -122,11 +122,18 @@ def _of_records(
     refuse_inputs([video], [*records, *plugin_inputs(plugin)])
     if not replace and video.exists() and not folder.samefile(records[0].parent):
         raise UserError(f"{video}: is there already; --replace replaces it, another --out keeps it")
-    names = [run.scenario.planner.name for run in runs]
-    if len(set(names)) < len(names):  # what tells them apart is what their files are called
-        names = [path.stem for path in records]
-    say(str(film.make(runs, video, names)))
+    say(str(film.make(runs, video, _told_apart(runs, records))))
     return runs
+
+
+def _told_apart(runs: list[Trajectory], records: list[Path]) -> list[str]:
+    """Name the runs by what differs: their planners, else their files, else their folders."""
+    ways = (
+        [run.scenario.planner.name for run in runs],
+        [path.stem for path in records],
+        [path.absolute().parent.name for path in records],
+    )
+    return next((names for names in ways if len(set(names)) == len(names)), ways[1])
 
 
 def _of_scenario(

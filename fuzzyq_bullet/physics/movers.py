@@ -94,7 +94,8 @@ class Mover:
         """Return whether the robot's disc is within its way ahead, and it comes closer to it."""
         clock = time - self._halted
         here, soon = self._at(clock), self._at(clock + _GLIMPSE)
-        way = math.dist(here[:2], soon[:2]) + self.extent * abs(soon[2] - here[2])
+        turned = math.remainder(soon[2] - here[2], math.tau)  # it may count from -π to π
+        way = math.dist(here[:2], soon[:2]) + self.extent * abs(turned)
         if way <= 0.0:
             return False
         need, now = radius + STOP_GAP, -math.inf
@@ -135,7 +136,6 @@ class Movers:
         self._engine: Engine | None = None
         self._height = 0.0
         self._shown: float | None = None
-        self._awake: list[Mover] = []
         self._asleep_until: dict[int, float] = {}
 
     def build(self, engine: Engine, height: float) -> None:
@@ -149,7 +149,7 @@ class Movers:
         courses = courses_of(*self._world, seed)
         for one in self.members:
             one.begin(courses[one.index])
-        self.time, self._shown, self._awake = 0.0, None, list(self.members)
+        self.time, self._shown = 0.0, None
         self._asleep_until = dict.fromkeys((one.index for one in self.members), 0.0)
         for one in self.members:
             self._put_solid(one)

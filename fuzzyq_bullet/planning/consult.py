@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import inspect
-import signal
-import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fuzzyq_bullet.errors import PlannerError, SensorError, Stopped, UserError
+from fuzzyq_bullet.blame import blamed
+from fuzzyq_bullet.errors import PlannerError, SensorError, UserError
 from fuzzyq_bullet.planning import Observation, Planner, PlannerSettings, make_planner
 from fuzzyq_bullet.planning.decision import DecisionError
-from fuzzyq_bullet.wording import error_in_words
-
-_PACKAGE = Path(__file__).resolve().parent
 
 
 def build_planner(settings: PlannerSettings, rng: np.random.Generator) -> Planner:
@@ -90,41 +85,14 @@ def _when(observation: Observation) -> str:
 
 @contextmanager
 def _blamed(name: str, when: str) -> Iterator[None]:
-    """Turn whatever a planner raises into one line that blames it.
-
-    A ``KeyboardInterrupt`` that may be a person's passes: only where Ctrl-C raises none, as on the
-    command line and in workers, can it be the planner's own.
-    """
+    """Turn whatever a planner raises into one line that blames it; see ``blame``."""
     try:
-        yield
+        with blamed(f"planner {name}", when, PlannerError):
+            yield
     except (PlannerError, SensorError):
         raise
     except UserError as error:
         raise type(error)(*(f"planner {name}: {problem}" for problem in error.problems)) from error
-    except KeyboardInterrupt as error:
-        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            raise
-        raise PlannerError(_line(name, when, error)) from error
-    except Stopped:
-        raise
-    except BaseException as error:  # whatever it is: asyncio's and others' are no Exception
-        raise PlannerError(_line(name, when, error)) from error
-
-
-def _line(name: str, when: str, error: BaseException) -> str:
-    exits = isinstance(error, SystemExit)
-    what = "tried to exit" if exits else f"stopped by {error_in_words(error)}"
-    return f"planner {name}: {what}, {when}{_place(error)}"
-
-
-def _place(error: BaseException) -> str:
-    """Say where an exception comes from: the last line that is not this package's own."""
-    frames = traceback.extract_tb(error.__traceback__)
-    theirs = [frame for frame in frames if _PACKAGE not in Path(frame.filename).parents]
-    if not frames:
-        return ""
-    last = (theirs or frames)[-1]
-    return f" ({last.filename}:{last.lineno}, in {last.name})"
 
 
 def _home(planner: Planner) -> str:

@@ -34,10 +34,12 @@ def robot_speed(trajectory: Trajectory) -> float | None:
     if trajectory.collision is None:
         return None
     ticks, time = trajectory.ticks, trajectory.collision.time
-    if trajectory.scenario.drive == "kinematic":  # the contact cut the last move short
+    if trajectory.scenario.drive == "kinematic" and len(ticks.time) > 1:
+        # The contact cut the last move short.
         return float(trajectory.decisions.step[-1] / (ticks.time[-1] - ticks.time[-2]))
     before = ticks.time >= time - FAULT_TIME - 1e-9
-    before[-1] &= len(ticks.time) == 1  # the last speed is what the contact has made of it
+    before[-2:] = True  # of few decisions a second, the tick before the contact is older
+    before[-1] = len(ticks.time) == 1  # the last speed is what the contact has made of it
     return float(np.abs(ticks.speed[before]).max(initial=0.0))
 
 

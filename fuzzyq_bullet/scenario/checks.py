@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from fuzzyq_bullet.blame import blamed
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE
@@ -176,7 +177,13 @@ def _random(scenario: Scenario) -> list[Conflict]:
     if scenario.random is None:
         return []
     drawn = scenario.random
-    found: list[Conflict] = [(("random", *loc), why) for loc, why in drawn.conflicts(scenario)]
+    try:
+        with blamed(f"layout {drawn.layout}", "in conflicts"):
+            found: list[Conflict] = [
+                (("random", *loc), why) for loc, why in drawn.conflicts(scenario)
+            ]
+    except UserError as error:
+        found = [(("random",), str(error))]
     if drawn.movers is not None:
         moving = drawn.movers.conflicts(scenario)
         found += [(("random", "movers", key), why) for key, why in moving]

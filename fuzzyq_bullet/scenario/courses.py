@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from numbers import Real
 
 import numpy as np
 
-from fuzzyq_bullet.errors import MotionError, UserError
+from fuzzyq_bullet.blame import blame, blamed
+from fuzzyq_bullet.columns import FAR
+from fuzzyq_bullet.errors import MotionError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.scenario.movers import movers, standing_field
 from fuzzyq_bullet.scenario.places import Arena
 from fuzzyq_bullet.shapes import Pose, Shape
 from fuzzyq_bullet.shapes.motion import Course, Surroundings
-from fuzzyq_bullet.wording import error_in_words, shorten
+from fuzzyq_bullet.wording import shorten
 
 STREAM = 20
 """Where the streams of random numbers of the motions begin among those of the seed: obstacle i has
@@ -80,9 +83,33 @@ def told_top_speed(obstacle: Shape) -> float | None:
     """
     with _blamed(obstacle, "in top_speed"):
         told = obstacle.motion.top_speed(obstacle)
-    if told is None or (isinstance(told, int | float) and 0.0 <= told < math.inf):
-        return told
+    if told is None:
+        return None
+    if isinstance(told, Real) and 0.0 <= told < math.inf:  # numpy's numbers are real, too
+        return float(told)
     raise _error(obstacle, f"top_speed must return a speed (m/s) or None, not {shorten(told)}")
+
+
+def conflicts_of(obstacle: Shape, standing: Field) -> list[tuple[str, str]]:
+    """Return what the obstacle's motion finds wrong with itself; see ``Motion.conflicts``.
+
+    Args:
+        obstacle: The obstacle.
+        standing: All that stands still (``standing_field``).
+
+    Raises:
+        MotionError: If it raises, or returns something else.
+    """
+    with _blamed(obstacle, "in conflicts"):
+        told = obstacle.motion.conflicts(obstacle, standing)
+    try:
+        found = [(key, why) for key, why in told]
+        if all(isinstance(part, str) for one in found for part in one):
+            return found
+    except (TypeError, ValueError):
+        pass
+    what = "must return a list of keys and messages"
+    raise _error(obstacle, f"conflicts {what}, not {shorten(told)}")
 
 
 class _Checked:
@@ -94,31 +121,26 @@ class _Checked:
     def pose(self, time: float, /) -> Pose:
         try:
             pose = self._course.pose(time)
-        except Exception as error:  # of a motion of the user's own
-            raise _stopped(self._obstacle, error, f"in pose({time:g})") from error
+        except BaseException as error:
+            blame(error, _name(self._obstacle), f"in pose({time:g})", MotionError)
         try:
-            if math.isfinite(sum(pose)) and len(pose) == 3:
-                return pose
-        except TypeError:
+            x, y, yaw = map(float, pose)
+            if abs(x) + abs(y) + abs(yaw) < FAR:  # not so if one is not a number
+                return Pose(x, y, yaw)
+        except (TypeError, ValueError, OverflowError):
             pass
-        what = "must return Pose(x, y, yaw), three finite numbers"
+        what = f"must return Pose(x, y, yaw), three numbers below {FAR:g}"
         raise _error(self._obstacle, f"pose({time:g}) {what}, not {shorten(pose)}")
 
 
-@contextmanager
-def _blamed(obstacle: Shape, when: str) -> Iterator[None]:
+def _name(obstacle: Shape) -> str:
+    return f"motion {obstacle.motion.kind}"
+
+
+def _blamed(obstacle: Shape, when: str) -> AbstractContextManager[None]:
     """Turn whatever a motion raises into one line that blames it."""
-    try:
-        yield
-    except UserError:
-        raise
-    except Exception as error:  # of a motion of the user's own
-        raise _stopped(obstacle, error, when) from error
-
-
-def _stopped(obstacle: Shape, error: Exception, when: str) -> MotionError:
-    return _error(obstacle, f"stopped by {error_in_words(error)}, {when}")
+    return blamed(_name(obstacle), when, MotionError)
 
 
 def _error(obstacle: Shape, what: str) -> MotionError:
-    return MotionError(f"motion {obstacle.motion.kind}: {what}")
+    return MotionError(f"{_name(obstacle)}: {what}")

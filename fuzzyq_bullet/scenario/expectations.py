@@ -9,9 +9,9 @@ from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
 from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationInfo, create_model
 
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.blame import blamed
 from fuzzyq_bullet.quantities import Model, Number
-from fuzzyq_bullet.wording import error_in_words, plain
+from fuzzyq_bullet.wording import plain
 
 OutcomeName: TypeAlias = Literal["goal", "collision", "timeout", "stuck"]
 Sense: TypeAlias = Literal["exactly", "at least", "at most"]
@@ -177,10 +177,8 @@ def unmet_expectations(expect: Expect, result: Any) -> list[str]:
     for name, limit in expect:
         if limit is None or name in _NO_FIGURES or (excused and name in _EXCUSED):
             continue
-        try:
+        with blamed(f"expectation {name}"):
             lines.append(_expectations[name].unmet(limit, result))
-        except Exception as error:
-            raise UserError(f"expectation {name}: {error_in_words(error)}") from error
     return [line for line in lines if line]
 
 

@@ -11,7 +11,7 @@ from fuzzyq_bullet.errors import MotionError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.quantities import TOUCH
 from fuzzyq_bullet.reading.problems import Loc
-from fuzzyq_bullet.scenario.courses import course_of, fastest, told_top_speed
+from fuzzyq_bullet.scenario.courses import conflicts_of, course_of, fastest, told_top_speed
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.movers import standing_field
@@ -35,12 +35,11 @@ def motion_conflicts(scenario: Scenario) -> list[tuple[Loc, str]]:
     found: list[tuple[Loc, str]] = []
     for i in moving:
         motion = ("obstacles", i, "motion")
-        conflicts = scenario.obstacles[i].motion.conflicts(scenario.obstacles[i], field)
-        found += [((*motion, key), why) for key, why in conflicts]
-        if conflicts:
-            continue
         try:
-            found += [(motion, why) for why in _conflicts(scenario, i, field)]
+            conflicts = conflicts_of(scenario.obstacles[i], field)
+            found += [((*motion, key), why) for key, why in conflicts]
+            if not conflicts:
+                found += [(motion, why) for why in _conflicts(scenario, i, field)]
         except MotionError as error:
             found.append((motion, str(error)))
     return found

@@ -137,9 +137,17 @@ def _allowed(node: Node, key: str) -> str:
             each = [_allowed(one, key) for one in node["prefixItems"]]
             same = len(set(each)) == 1
             return f"{len(each)} × {each[0]}" if same else f"[{', '.join(each)}]"
-        return f"a list; each: {_allowed(node.get('items', {}), key)}"
+        return f"a list{_length(node)}; each: {_allowed(node.get('items', {}), key)}"
     words = {"boolean": "`true` or `false`", "object": "keys of its own", "string": "text"}
     return words.get(kind) or f"{kind}{_bounds(node)}"
+
+
+def _length(node: Node) -> str:
+    """Say how many items a list may have."""
+    least, most = node.get("minItems", 0), node.get("maxItems")
+    if most is None:
+        return f" of {least} or more" if least else ""
+    return f" of {least} to {most}" if least else f" of at most {most}"
 
 
 def _bounds(node: Node) -> str:

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from fuzzyq_bullet.blame import blamed
 from fuzzyq_bullet.errors import SensorError
 from fuzzyq_bullet.quantities import ModelRegistry, Number
 from fuzzyq_bullet.robots import RobotModel
-from fuzzyq_bullet.wording import error_in_words
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -97,10 +97,8 @@ class SensorModel(BaseModel):
         Raises:
             SensorError: If it raises, or they are not.
         """
-        try:
-            told = self.measure(lengths, rng)
-        except Exception as error:  # of a sensor of the user's own
-            raise SensorError(f"sensor {self.model}: stopped by {error_in_words(error)}") from error
+        with blamed(f"sensor {self.model}", kind=SensorError):
+            told = np.asarray(self.measure(lengths, rng), dtype=np.float64)
         if np.shape(told) != lengths.shape or not np.min(told) >= 0.0:
             raise SensorError(
                 f"sensor {self.model}: measure must return {lengths.size} lengths of at least 0"

@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, TypeAlia
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
+from fuzzyq_bullet.blame import blamed
+from fuzzyq_bullet.errors import MotionError, UserError
 from fuzzyq_bullet.quantities import DECIMALS, Model, ModelRegistry, Point
-from fuzzyq_bullet.shapes.motion import STILL, AnyMotion
+from fuzzyq_bullet.shapes.answers import check_answers
+from fuzzyq_bullet.shapes.motion import STILL, AnyMotion, Motion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -63,6 +67,16 @@ class Shape(Model, ABC):
     shape: str
     position: Point = Field(description="Centre (m).")
     motion: AnyMotion = Field(default=STILL, description="How it moves; it stands still.")
+
+    @model_validator(mode="after")
+    def _answers(self) -> Self:
+        """Refuse a shape of the user's own that raises or answers nonsense; ours do not."""
+        if type(self).__module__.partition(".")[0] != __package__.partition(".")[0]:
+            try:
+                check_answers(self)
+            except UserError as error:
+                raise PydanticCustomError("shape", "{why}", {"why": str(error)}) from error
+        return self
 
     @abstractmethod
     def corners(self) -> tuple[Floats, float]:
@@ -120,7 +134,20 @@ class Shape(Model, ABC):
         cos, sin = math.cos(turn), math.sin(turn)
         px, py = self.position
         at = round(x + cos * px - sin * py, DECIMALS), round(y + sin * px + cos * py, DECIMALS)
-        return self.model_copy(update={"position": at, "motion": self.motion.moved(x, y, turn)})
+        return self.model_copy(update={"position": at, "motion": self.moved_motion(x, y, turn)})
+
+    def moved_motion(self, x: float, y: float, turn: float) -> Motion:
+        """Return its motion turned about the origin (rad) and then moved (m).
+
+        Raises:
+            MotionError: If that raises, or is no motion.
+        """
+        who = f"motion {self.motion.kind}"
+        with blamed(who, "in moved", MotionError):
+            moved: Any = self.motion.moved(x, y, turn)
+        if not isinstance(moved, Motion):
+            raise MotionError(f"{who}: moved must return a motion, not a {type(moved).__name__}")
+        return moved
 
 
 class ShapeGroup(ABC):

@@ -107,7 +107,7 @@ class Polygon(Shape):
             (round(x + cos * px - sin * py, DECIMALS), round(y + sin * px + cos * py, DECIMALS))
             for px, py in self.points
         )
-        motion = self.motion.moved(x, y, turn)
+        motion = self.moved_motion(x, y, turn)
         told = {"points": points, "position": _middle(points), "motion": motion}
         return self.model_copy(update=told)
 

@@ -37,8 +37,10 @@ MAX_ROWS = 20_000
 _MAX_BYTES = 2_000_000
 _COLUMNS = ("t", "x", "y", "yaw")
 _ROUNDING = 1e-6
-_JUMP = 0.15
-"""A trace that is repeated may end so far (m) from where it begins: 3 m/s for a tick."""
+_TICK = 0.05
+"""Time (s) in which a trace that is repeated goes from its last row to its first."""
+_JUMP = MAX_MOTION_SPEED * _TICK
+"""So it may end no farther (m) from where it begins."""
 Row: TypeAlias = tuple[Annotated[Number, Field(ge=0.0, le=7200.0)], Coordinate, Coordinate, Angle]
 _ROW: TypeAdapter[Row] = TypeAdapter(Row)
 
@@ -75,6 +77,16 @@ class Trace(Motion):
     def course(self, obstacle: Moving, surroundings: Surroundings) -> Course:
         """Return the way along the rows."""
         return _Traced(self, obstacle.position)
+
+    def top_speed(self, obstacle: Moving) -> float:
+        """Return the speed of its edge on the way to that row which it reaches fastest."""
+        extent = obstacle.extent()
+        jump = math.dist(self.poses[-1][1:3], self.poses[0][1:3]) / _TICK if self.repeat else 0.0
+        ways = (
+            (math.dist(one[1:3], two[1:3]) + extent * abs(two[3] - one[3])) / (two[0] - one[0])
+            for one, two in pairwise(self.poses)
+        )
+        return max(jump, *ways, 0.0)
 
     def conflicts(self, obstacle: Moving, standing: Standing) -> list[tuple[str, str]]:
         """Return whether it turns too fast, or jumps where it begins again."""

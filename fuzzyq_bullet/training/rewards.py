@@ -7,10 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any, TypeAlias
 
+from fuzzyq_bullet.blame import blamed
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.physics.robot import RobotState
 from fuzzyq_bullet.recording.trajectory import Outcome
-from fuzzyq_bullet.wording import did_you_mean, error_in_words, shorten
+from fuzzyq_bullet.wording import did_you_mean, shorten
 
 MOST = 1e6
 """Greatest penalty, and greatest reward of one's own for one decision."""
@@ -136,10 +137,8 @@ class RewardSettings:
         )
 
     def _own_reward(self, step: Transition) -> float:
-        try:
+        with blamed(f"reward {self.own}"):
             value = float(REWARDS[self.own](step))
-        except Exception as error:
-            raise UserError(f"reward {self.own}: {error_in_words(error)}") from error
         if not abs(value) <= MOST:
             raise UserError(
                 f"reward {self.own}: returned {value:g} at {step.after.time:g} s; a number from "

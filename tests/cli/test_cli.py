@@ -227,6 +227,19 @@ def test_the_reference_tells_of_every_key_of_the_schema(fuzzyq: Call) -> None:
         assert f"\n| `{key}` | " in told, key
 
 
+def test_the_reference_tells_how_many_items_a_list_may_have(fuzzyq: Call) -> None:
+    schema, rows = json.loads(fuzzyq("schema").stdout), {}
+    for line in fuzzyq("schema", "--markdown").stdout.splitlines():
+        if line.startswith("| `points` | "):
+            rows[line.split(" | ")[1]] = line
+    for kind, model in (("patrol", "Patrol"), ("polygon", "Polygon")):
+        points = schema["$defs"][model]["properties"]["points"]
+        least, most = points["minItems"], points["maxItems"]
+        assert f" a list of {least} to {most}; each: 2 × number" in rows[kind]
+    assert schema["properties"]["via"]["maxItems"] == 100
+    assert " | a list of at most 100; each: " in fuzzyq("schema", "--markdown").stdout
+
+
 def test_the_schema_knows_what_plugins_add(fuzzyq: Call) -> None:
     extend = Path(__file__).parents[2] / "examples" / "extend"
     kinds = ("shape", "motion", "layout", "robot", "planner", "sensor", "expectation")

@@ -146,6 +146,19 @@ def test_a_race_writes_the_records_that_run_would_and_one_film(
     ).returncode == 0
 
 
+def test_records_of_one_name_are_told_apart_by_their_folders(
+    inside: Call, filmed: Path, tmp_path: Path
+) -> None:
+    for way in ("{}.npz", "{}/short.npz"):
+        records = [tmp_path / way.format(name) for name in ("first", "second")]
+        for record in records:
+            record.parent.mkdir(exist_ok=True)
+            shutil.copy(filmed / "short.npz", record)
+        inside("race", *records, "--still", "0.5", "--out", tmp_path)
+    by_file, by_folder = ("race-first-vs-second-at0.5s.png", "race-short-vs-short-at0.5s.png")
+    assert (tmp_path / by_file).read_bytes() == (tmp_path / by_folder).read_bytes()
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

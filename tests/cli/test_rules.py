@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -274,6 +275,25 @@ def test_explain_exports_what_explain_reads(tmp_path: Path, inside: Call) -> Non
     with pytest.raises(UserError, match=r"a\.yaml"):
         inside("explain", "--rules", own, "--export", own, "--replace")
     assert load_controller(tmp_path / "a.yaml") == paper_definition()
+
+
+def test_an_exported_table_says_that_explain_and_film_turn_its_columns_round(
+    tmp_path: Path, inside: Call
+) -> None:
+    inside("explain", "--export", tmp_path / "a.yaml")
+    text = (tmp_path / "a.yaml").read_text()
+    shown = re.search(r"show these columns in another order: (.+)\.\n  # +(.+)\n", text)
+    assert shown is not None
+    head = next(
+        line for line in inside("explain", 1.2, -0.8).stdout.splitlines() if "d \\ Df" in line
+    )
+    assert shown[1].split(", ") == head.split()[3:] == shown[2].split()[::-1]
+    told = load_controller(tmp_path / "a.yaml").model_dump(mode="json")
+    side = told["inputs"]["difference"]["sets"]
+    told["inputs"]["difference"]["sets"] = dict(reversed(side.items()))
+    told["rules"] = {label: row[::-1] for label, row in told["rules"].items()}
+    save_controller(ControllerDefinition.model_validate(told), tmp_path / "b.yaml")
+    assert "in another order" not in (tmp_path / "b.yaml").read_text()
 
 
 def test_explain_shows_a_table_of_any_size(field: Callable[..., Path], inside: Call) -> None:

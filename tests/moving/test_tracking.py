@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import Observation, RangeSensor
-from fuzzyq_bullet.planning.traffic.circle_fit import fit_circle
+from fuzzyq_bullet.planning.traffic.circle_fit import Circle, fit_circle
 from fuzzyq_bullet.planning.traffic.lidar_scan import (
     SURFACE_TOLERANCE,
     in_free_space,
     lidar_scan,
 )
+from fuzzyq_bullet.planning.traffic.track import SPEED_TOLERANCE, TrackHistory
 from fuzzyq_bullet.planning.traffic.tracker import Tracker
 from fuzzyq_bullet.scenario import Box, Cylinder
 
@@ -169,3 +170,36 @@ def test_the_velocity_of_a_box_is_told_to_within_5_cm_a_second(way):
             assert math.hypot(*track.centre) - track.radius > at[0] - 0.15 - 0.05
     assert len(told) > 5
     assert np.median(told, axis=0) == pytest.approx(way, abs=0.05)
+
+
+def test_a_track_may_be_a_little_faster_than_fitted_but_not_beyond_the_limit() -> None:
+    track = TrackHistory(0.25, velocity=(0.3, 0.4))
+    assert track.max_speed(3.0) == pytest.approx(0.5 + SPEED_TOLERANCE)
+    assert track.max_speed(0.52) == 0.52
+    assert TrackHistory(0.25).max_speed(3.0) == 3.0
+
+
+def test_a_radius_that_changes_throws_earlier_centres_away() -> None:
+    def added(radius: float) -> TrackHistory:
+        track = TrackHistory(0.25)
+        for k in range(4):
+            track.add(0.05 * k, Circle((0.0, 0.02 * k), 0.25, fits=True), 0.015, 3.0)
+        track.add(0.2, Circle((0.0, 0.08), radius, fits=True), 0.015, 3.0)
+        return track
+
+    assert added(0.28).velocity == pytest.approx((0.0, 0.4))
+    assert added(0.30).velocity is None
+
+
+def test_a_fit_that_is_too_fast_is_no_velocity() -> None:
+    track = TrackHistory(0.25)
+    for k in range(4):
+        track.add(0.05 * k, Circle((0.0, 0.2 * k), 0.25, fits=True), 0.015, 3.0)
+    assert track.velocity is None
+
+
+def test_what_stands_behind_a_track_does_not_turn_it() -> None:
+    track = TrackHistory(0.25, velocity=(1.0, 0.0))
+    track.positions.append((0.0, 0.0, 0.0))
+    assert track.straight_for(np.array([[-1.0, 0.0]]), 0.0) == math.inf
+    assert track.straight_for(np.array([[-1.0, 0.0], [1.25, 0.0]]), 0.0) == pytest.approx(1.0)

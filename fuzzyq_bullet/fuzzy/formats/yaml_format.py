@@ -50,17 +50,21 @@ def _set(one: SetDefinition) -> str:
 
 
 def _table(definition: ControllerDefinition) -> list[str]:
-    """Return the rules with their columns below each other, as the paper prints them."""
+    """Return the rules with their columns below each other, in the order of their sets."""
     columns = definition.inputs.difference.sets
     rows = [definition.rules[label] for label in definition.inputs.distance.sets]
     wide = [max(len(label), *(len(row[i]) for row in rows)) + 1 for i, label in enumerate(columns)]
     margin = max(map(len, definition.inputs.distance.sets)) + len("  :")
     head = "".join(f" {label:<{width}}" for label, width in zip(columns, wide, strict=True))
     lines = [f"  #{' ' * (margin - 2)}{head}".rstrip()]
+    shown = [list(columns)[i] for i in definition.inputs.difference.variable("difference").falling]
+    if shown != list(columns):
+        order = ", ".join(shown)
+        lines.insert(0, f"  # explain, film and page show these columns in another order: {order}.")
     for label, row in zip(definition.inputs.distance.sets, rows, strict=True):
         cells = [f"{cell}," for cell in row[:-1]] + [row[-1]]
-        shown = " ".join(f"{cell:<{width}}" for cell, width in zip(cells, wide, strict=True))
-        lines.append(f"  {label + ':':<{margin - 2}} [{shown.rstrip()}]")
+        told = " ".join(f"{cell:<{width}}" for cell, width in zip(cells, wide, strict=True))
+        lines.append(f"  {label + ':':<{margin - 2}} [{told.rstrip()}]")
     return lines
 
 
