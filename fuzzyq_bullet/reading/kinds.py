@@ -61,7 +61,7 @@ _SUFFIXES = {
 
 
 def refuse_other_suffix(path: Path) -> None:
-    """Make sure that a file is none of another kind, by its suffix, where a scenario belongs.
+    """Make sure that a file that is no scenario is none of another kind, by its suffix.
 
     Raises:
         UserError: If it is, with what to do with it.

@@ -61,13 +61,11 @@ def load_scenario(source: Source, *, policies: bool = True) -> Scenario:
     """
     path = find_scenario(source)
     refuse_suffix(path)
-    refuse_other_suffix(path)
-    return parse_scenario(
-        _read(path),
-        str(path),
-        folder=path.parent,
-        policies=policies,
-    )
+    try:
+        return parse_scenario(_read(path), str(path), folder=path.parent, policies=policies)
+    except UserError:
+        refuse_other_suffix(path)
+        raise
 
 
 def parse_scenario(

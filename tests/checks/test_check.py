@@ -371,7 +371,7 @@ def test_the_junit_report_is_valid_and_counts_right(
     report = etree.parse(str(folder / "reports" / "junit.xml"))
     schema.assertValid(report)
     suite = report.find("testsuite")
-    assert suite.get("failures") == "8"
+    assert suite.get("failures") == "9"
     assert int(suite.get("tests")) == len(suite.findall("testcase"))
     assert int(suite.get("errors")) == 1 + len(json.loads(checked.stdout)["problems"])
     # A name that XML cannot hold does not spoil it.
