@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import importlib
 import importlib.util
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -30,6 +31,8 @@ def load_plugins(names: Sequence[str]) -> None:
 
 
 def _load(name: str) -> None:
+    if name.endswith(".py") and not os.path.isfile(name):  # noqa: PTH113 - a long name is no error
+        raise UserError(f"--plugin: {name}: there is no such file")
     try:
         if name.endswith(".py"):
             _load_file(Path(name))
@@ -49,8 +52,6 @@ def _load(name: str) -> None:
 
 
 def _load_file(path: Path) -> None:
-    if not path.is_file():
-        raise FileNotFoundError("there is no such file")
     name = _module_name(path)
     if name in sys.modules:  # imported before, perhaps by another path
         return

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from fuzzyq_bullet.checks.group import Group
 from fuzzyq_bullet.checks.verdict import Verdict
 from fuzzyq_bullet.errors import UserError
-from fuzzyq_bullet.files import read_bytes, write_text
+from fuzzyq_bullet.files import read_bytes, writable_files, write_text
 from fuzzyq_bullet.platforms import data_folder, pybullet_in_words
 from fuzzyq_bullet.recording.metrics import Result
 from fuzzyq_bullet.version import __version__
@@ -174,6 +174,17 @@ class Baselines:
 def baselines_beside(files: Sequence[Path]) -> list[Path]:
     """Return where the records of scenario files are, or would be."""
     return [folder / FILE for folder in dict.fromkeys(file.parent for file in files)]
+
+
+def refuse_unwritable(files: Sequence[Path]) -> None:
+    """Make sure, before anything is driven, that --record can note beside scenario files.
+
+    Raises:
+        UserError: If a folder cannot be written to, or what is there is no record to add to.
+    """
+    for path in baselines_beside(files):
+        writable_files(path.parent, [path.name])
+        read(path)
 
 
 def refuse_bundled(paths: Sequence[str]) -> None:

@@ -10,6 +10,7 @@ import os
 import traceback
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -119,7 +120,7 @@ def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
     """Return the verdict with what the run came to, and why it was not what was expected."""
     expect = trajectory.scenario.expect
     misses = unmet_expectations(expect, result)
-    update = {"expect": expect.model_dump(mode="json"), "result": result}
+    update: dict[str, Any] = {"expect": expect.model_dump(mode="json"), "result": result}
     if not misses:
         return verdict.model_copy(update=update)
     source = Source(verdict.file)
@@ -131,13 +132,15 @@ def judge(trajectory: Trajectory, result: Result, verdict: Verdict) -> Verdict:
     if expect.outcome == "goal" != result.outcome and not has_way(trajectory.scenario):
         why.insert(0, NO_WAY)  # before what came of it
     if touch is not None:
-        speeds = speeds_in_words(trajectory) if touch.distance_m <= 0 else ""
-        why.append(in_words(touch, verdict.file) + (f"; {speeds}" if speeds else ""))
+        contact = trajectory.collision is not None
+        speeds = speeds_in_words(trajectory) if contact else ""
+        told = in_words(touch, verdict.file, contact=contact)
+        why.append(told + (f"; {speeds}" if speeds else ""))
     elif result.outcome in ("timeout", "stuck"):
         why.append(whereabouts(trajectory, result))
     line = touch.line if touch is not None else source.line_of("expect", "goal", "name")
-    told = {"status": "failed", "why": why, "touch": touch, "line": line}
-    return verdict.model_copy(update={**update, **told})
+    update |= {"status": "failed", "why": why, "touch": touch, "line": line}
+    return verdict.model_copy(update=update)
 
 
 def _run(scenario: Scenario) -> Trajectory:
@@ -232,13 +235,25 @@ def nearest(trajectory: Trajectory, source: Source) -> Touch:
     )
 
 
-def in_words(touch: Touch, file: str) -> str:
-    """Say when and where it was, at which obstacle and line of the file."""
+def in_words(touch: Touch, file: str, *, contact: bool) -> str:
+    """Say when and where it was, at which obstacle and line of the file.
+
+    Args:
+        touch: What the robot touched, or came nearest to.
+        file: The scenario file.
+        contact: Whether the two touched. Without a contact the disc around a robot of another shape
+            may overlap an obstacle all the same: then the distance is negative.
+    """
     place = f"{file}:{touch.line}"
-    if touch.distance_m <= 0:
+    if contact:
         return touch_in_words(touch.what, touch.point, touch.time_s, place)
     x, y = (plain(value, 2) for value in touch.point)
     near = f"{plain(touch.distance_m, 3)} m from {touch.what} ({place})"
+    if touch.distance_m < 0:
+        near = (
+            f"the disc around the robot {plain(-touch.distance_m, 3)} m into {touch.what} "
+            f"({place}), no contact"
+        )
     return f"nearest after {touch.time_s:.2f} s, {near}, the robot at ({x}, {y})"
 
 

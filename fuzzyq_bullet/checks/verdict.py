@@ -57,7 +57,8 @@ class Touch(BaseModel):
         line: Line of the scenario file that put it there.
         point: Where they touched, or where the robot's centre was (m).
         time_s: When, in simulated time (s).
-        distance_m: Distance between the two (m); 0 when they touched.
+        distance_m: Distance between the two (m); 0 when they touched, negative where the disc
+            around the robot overlaps it without a contact.
     """
 
     what: str

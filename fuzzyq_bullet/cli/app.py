@@ -88,6 +88,8 @@ def call() -> int:
     try:
         status = app(sys.argv[1:], prog_name="fuzzyq", standalone_mode=False)
     except typer.TyperException as error:  # an unknown option, a missing argument, ...
+        if isinstance(error, typer.BadParameter):
+            error.message = _in_words(error)
         message = " ".join(error.format_message().split())
         if not message:  # a command that only has others below it has shown its help
             return 0
@@ -98,3 +100,19 @@ def call() -> int:
         what = f"{error.filename}: " if error.filename else ""
         raise UserError(f"{what}{error.strerror or error}") from error
     return status if isinstance(status, int) else 0
+
+
+def _in_words(error: typer.BadParameter) -> str:
+    """Return what is wrong with the value of an option, in the words that files' mistakes have."""
+    from pydantic import ValidationError
+
+    from fuzzyq_bullet.reading.problems import problem_of
+
+    cause = error.__cause__
+    if not isinstance(cause, ValidationError):
+        return error.message
+    first: dict[str, Any] = dict(cause.errors(include_url=False)[0])
+    if {"ge", "gt", "le", "lt"} & first.get("ctx", {}).keys():  # a number, though given as text
+        number = float(first["input"])
+        first["input"] = int(number) if number.is_integer() else number
+    return problem_of(first, (), ()).message

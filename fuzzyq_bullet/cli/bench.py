@@ -168,15 +168,18 @@ def _asked(study: type[Study], given: dict[str, Any]) -> Study:
     """
     from pydantic import ValidationError
 
+    from fuzzyq_bullet.reading.problems import problem_of
+
     least, most = (_bounds(study.model_fields["seed"])[name] for name in ("min", "max"))
     if not least <= given["seed"] <= most:
         raise UserError(f"--seed: must be from {least} to {most}, got {given['seed']}")
     try:
         return study(**given)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
+        first: dict[str, Any] = dict(error.errors(include_url=False)[0])
         name = str(first["loc"][0]).replace("_", "-") if first["loc"] else study.name
-        raise UserError(f"--{name}: {first['msg']}") from error
+        told = problem_of(first, tuple(first["loc"]), ()).message
+        raise UserError(f"--{name}: {told}") from error
 
 
 def _bounds(field: Any) -> dict[str, Any]:

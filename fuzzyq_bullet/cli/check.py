@@ -88,7 +88,12 @@ def check(
     Raises:
         UserError: If an option is wrong, or there is no scenario.
     """
-    from fuzzyq_bullet.checks.baseline import Baselines, baselines_beside, refuse_bundled
+    from fuzzyq_bullet.checks.baseline import (
+        Baselines,
+        baselines_beside,
+        refuse_bundled,
+        refuse_unwritable,
+    )
     from fuzzyq_bullet.checks.group import Group
     from fuzzyq_bullet.checks.plan import Plan, discover, planned
     from fuzzyq_bullet.checks.reports import as_json, harmless, junit_xml, problem_command
@@ -120,6 +125,8 @@ def check(
         if junit is not None:
             writable_files(junit.parent, [junit.name])  # what cannot be is told before the work
             written.append(junit)
+        if record:
+            refuse_unwritable([Path(job.file) for job in plan.jobs])
         inputs = [*plan.inputs, *plugin_inputs(plugin or []), *baselines_beside(plan.inputs)]
         refuse_inputs(written, inputs)
         begun = time.monotonic()

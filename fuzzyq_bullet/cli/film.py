@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -10,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
-from fuzzyq_bullet.cli.options import progress_bar
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.cli.options import progress_bar, say
+from fuzzyq_bullet.errors import Stopped, UserError
 from fuzzyq_bullet.filming import (
     FORMATS,
     MOST_ANIMATION_FPS,
@@ -123,6 +124,23 @@ class FilmRequest:
 
         return film_name(run, self.filming, self.form, self.still)
 
+    def options(self) -> list[str]:
+        """Return the words of a command line that ask for it; none for the usual film."""
+        film, usual = self.filming, Filming()
+        size = None if film.size is None else "x".join(map(str, film.size))
+        told = {
+            "view": None if film.view == usual.view else film.view,
+            "size": size,
+            "fps": film.fps,
+            "speed": None if film.speed == usual.speed else film.speed,
+            "from": film.start,
+            "to": film.end,
+            "format": None if self.form == "mp4" else self.form,
+            "still": self.still,
+        }
+        given = [(f"--{name}", f"{value}") for name, value in told.items() if value is not None]
+        return [word for pair in given for word in pair]
+
     def make(
         self,
         runs: Trajectory | Sequence[Trajectory],
@@ -205,6 +223,28 @@ def film_request(
             raise UserError(f"--view: must be one of {', '.join(known)}; got {view!r}")
     with _options_named():
         return FilmRequest(Filming(**filming), form, still)
+
+
+@contextmanager
+def kept_if_stopped(
+    film: FilmRequest, command: str, records: Sequence[Path], plugins: Sequence[str]
+) -> Iterator[None]:
+    """Say, if a signal ends the block, that the records are there, and how to make the film.
+
+    Args:
+        film: The film that is made in the block.
+        command: The command that makes it of records: ``replay`` or ``race``.
+        records: What was written before.
+        plugins: Modules that it needs.
+    """
+    try:
+        yield
+    except Stopped:
+        files = [str(path) for path in records]
+        words = [word for plugin in plugins for word in ("--plugin", plugin)]
+        again = shlex.join(["fuzzyq", command, *files, *film.options(), *words])
+        say(f"kept: {', '.join(files)}; to film: {again}")
+        raise
 
 
 @contextmanager

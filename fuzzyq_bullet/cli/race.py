@@ -18,6 +18,7 @@ from fuzzyq_bullet.cli.film import (
     ToOption,
     ViewOption,
     film_request,
+    kept_if_stopped,
 )
 from fuzzyq_bullet.cli.options import FOLDER, Json, PluginOption, ReplaceOption, say
 from fuzzyq_bullet.cli.run import asked_for, driven, summarise
@@ -182,7 +183,8 @@ def _of_scenario(
         run.save(npz)
         write_text(result_file, result.model_dump_json(indent=2) + "\n")
         summarise(result, [], run, listed=len(one.obstacles))
-    film.make(runs, video, planners)
+    with kept_if_stopped(film, "race", [npz for npz, _ in files], plugin):
+        film.make(runs, video, planners)
     for path in written:
         say(f"  {path}")
     return runs

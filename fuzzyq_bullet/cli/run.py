@@ -19,6 +19,7 @@ from fuzzyq_bullet.cli.film import (
     ToOption,
     ViewOption,
     film_request,
+    kept_if_stopped,
 )
 from fuzzyq_bullet.cli.options import (
     FOLDER,
@@ -111,7 +112,8 @@ def run(
     trajectory.save(npz)
     write_text(result_file, result.model_dump_json(indent=2) + "\n")
     if video:
-        film.make(trajectory, mp4)
+        with kept_if_stopped(film, "replay", [npz], plugin or []):
+            film.make(trajectory, mp4)
     if json:
         typer.echo(result.model_dump_json(indent=2))
     misses = unmet_expectations(task.expect, result)

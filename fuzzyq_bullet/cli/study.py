@@ -62,10 +62,11 @@ def run_study(
         _refuse_others(study, out)
     names = [f"{study.name}.json", *([f"{study.name}.png"] if study.pictured else [])]
     results: dict[str, Swept] = {}
+    here = where[1] is None  # no scheduler of a cluster
     with _pool(*where, plugins) as pool:
         text, *images = writable_files(out, names)
         while True:
-            results[stage.name] = _swept(study, stage, out, pool, more)
+            results[stage.name] = _swept(study, stage, out, pool, more, here=here)
             try:
                 stage = stages.send(results[stage.name])
             except StopIteration:
@@ -137,8 +138,10 @@ def _judge(findings: Findings, last: Swept) -> None:
         raise typer.Exit(1)
 
 
-def _swept(study: Study, stage: Stage, out: Path, pool: Pool, more: dict[str, Any]) -> Swept:
-    """Run one sweep of a study in its folder, and say how it went."""
+def _swept(
+    study: Study, stage: Stage, out: Path, pool: Pool, more: dict[str, Any], *, here: bool
+) -> Swept:
+    """Run one sweep of a study in its folder, and say how it went; ``here``: on this machine."""
     from fuzzyq_bullet.studies.study import Swept
     from fuzzyq_bullet.studies.sweep import sweep
 
@@ -155,6 +158,7 @@ def _swept(study: Study, stage: Stage, out: Path, pool: Pool, more: dict[str, An
             pool=pool,
             work=study.work(),
             progress=progress,
+            here=here,
         )
     state = done.state
     say(

@@ -166,7 +166,7 @@ def train(
         with alone_at(files.checkpoint):
             done = episodes_done(config, tasks, files, resume=resume, anew=anew)
             progress = TrainingProgress(done)
-            curve = _learn(config, tasks, files, progress, resume=resume)
+            curve = _learn(config, tasks, files, progress, resume=resume or done > 0)
     except Stopped:
         where = [] if out is None else ["--out", out]
         again = f"{config.command} {shlex.join([*where, '--resume'])}"
@@ -215,7 +215,7 @@ def _tell(config: TrainingConfig, summary: dict[str, Any]) -> None:
         pace = f"{now} episodes in {summary['time_s']:.1f} s: {rate:.2f} episodes/s"
         pace += f"; {before} were done already" if before else ""
     else:
-        pace = f"all {before} episodes were done already"
+        pace = f"all {before} episodes were done already; --anew trains again"
     say(f"{config.planner}: {pace} ({config.drive}, seed {config.seed})", style="bold")
     say(_gain(summary))
     for key in ("policy", "picture", "checkpoint"):

@@ -28,6 +28,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.learning.checkpoint import LARGEST
 from fuzzyq_bullet.learning.learners import Floats
+from fuzzyq_bullet.reading.kinds import POLICY, refuse_other_kind
 from fuzzyq_bullet.reading.untrusted import read_object, shown
 
 FORMAT = 1
@@ -261,7 +262,10 @@ def load_policy(path: Path | str, expect: PolicySpec | None = None) -> Policy:
             right.
     """
     data = read_object(Path(path), what="a policy", most=MAX_BYTES)
-    form = data.get("format")
+    refuse_other_kind(str(path), data, POLICY)
+    if "format" not in data:
+        raise UserError(f"{path}: is not a policy: it has no format; fuzzyq train writes policies")
+    form = data["format"]
     if form != FORMAT or isinstance(form, bool):
         raise UserError(
             f"{path}: format: is {shown(form)}; this version reads policies of format {FORMAT}"

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from fuzzyq_bullet.quantities import ModelRegistry
-from fuzzyq_bullet.reading.yaml_tree import Node
+from fuzzyq_bullet.reading.yaml_tree import Node, decimal_comma
 from fuzzyq_bullet.wording import did_you_mean, shorten
 
 Loc: TypeAlias = tuple[str | int, ...]
@@ -167,6 +167,11 @@ def _expected(what: str) -> Callable[[Any, dict[str, Any]], str]:
     return lambda value, context: f"expected {what}, got {shorten(value)}"
 
 
+def _number(value: Any, context: dict[str, Any]) -> str:
+    comma = decimal_comma(value) if isinstance(value, str) else ""
+    return comma or f"expected a number, got {shorten(value)}"
+
+
 def _bound(words: str, limit: str) -> Callable[[Any, dict[str, Any]], str]:
     def say(value: Any, context: dict[str, Any]) -> str:
         bound = context[limit]
@@ -185,8 +190,8 @@ def _length(value: Any, context: dict[str, Any]) -> str:
 
 
 _WORDING: dict[str, Callable[[Any, dict[str, Any]], str]] = {
-    "float_type": _expected("a number"),
-    "float_parsing": _expected("a number"),
+    "float_type": _number,
+    "float_parsing": _number,
     "finite_number": lambda value, context: f"must be finite, got {shorten(value)}",
     "int_type": _expected("a whole number"),
     "int_parsing": _expected("a whole number"),

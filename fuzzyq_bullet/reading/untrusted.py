@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_bytes
+from fuzzyq_bullet.reading.kinds import not_a_record
 from fuzzyq_bullet.wording import shorten
 
 MAX_BYTES = 1 << 30
@@ -32,10 +33,10 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
     Raises:
         UserError: If it cannot be read, or is no archive of plain arrays.
     """
+    content = read_bytes(path, what="an archive of arrays (.npz)", most=MAX_BYTES)
     try:
-        content = io.BytesIO(read_bytes(path, what="an archive of arrays (.npz)", most=MAX_BYTES))
         # The warnings numpy has about odd headers are about files that it did not write itself.
-        with zipfile.ZipFile(content) as archive, warnings.catch_warnings():
+        with zipfile.ZipFile(io.BytesIO(content)) as archive, warnings.catch_warnings():
             warnings.simplefilter("error")
             members = archive.infolist()
             # What a member says to be its size is also the most that is read of it.
@@ -47,7 +48,10 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {error.strerror or error}") from error
     except Exception as error:  # a damaged file makes zipfile, zlib and numpy raise ten kinds
-        raise UserError(f"{path}: not an archive of arrays (.npz), or damaged") from error
+        other = not_a_record(path, content)
+        raise UserError(
+            f"{path}: {other or 'not an archive of arrays (.npz), or damaged'}"
+        ) from error
 
 
 def _read(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> NDArray[Any]:

@@ -24,6 +24,10 @@ Key: TypeAlias = "str | int"
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _INTEGER = re.compile(r"[-+]?[0-9]{1,300}")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_WHOLE, _DIGITS = re.compile(r"[-+]?[0-9]+"), re.compile(r"[0-9]+")
+_COMMA = re.compile(r"[-+]?[0-9]+,[0-9]+")
+_MOST_COMMAS = 10
+"""Most decimal commas that are told of."""
 _WORDS: dict[str, Any] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL")),
     **dict.fromkeys(("true", "True", "TRUE"), True),
@@ -124,6 +128,8 @@ class _Builder:
         self.count = 0
         self.anchors: dict[str, Node | None] = {}  # None: not finished yet
         self.open: list[_Open] = []
+        self.commas: list[str] = []  # a line for each decimal comma
+        self.before: Any = None  # the plain value that was read last
 
     def build(self, loader: Any) -> Node:
         root: Node | None = None
@@ -149,6 +155,8 @@ class _Builder:
                 self._place(finished, line if isinstance(event, yaml.AliasEvent) else finished.line)
             else:
                 root = finished
+        if self.commas:
+            raise UserError(*self.commas[:_MOST_COMMAS])
         if root is None:
             raise self._error(1, "the file is empty")
         return root
@@ -159,11 +167,14 @@ class _Builder:
         plain = event.style is None or event.style == ""
         value = _resolve(event.value) if plain else event.value
         if self._awaits_key():
+            if plain and self._goes_on(event):
+                value = self._note_comma(event.value, line)
             if not isinstance(value, str):
                 shown = event.value or "nothing"
                 raise self._error(line, f"a key must be text, got {shown:.40}; put it in quotes")
             self._open_key(value, line)
             return None
+        self.before = event if plain else None
         node = Node(value, line, _NO_CHILDREN, _NO_LINES)
         if event.anchor:
             self.anchors[event.anchor] = node
@@ -226,6 +237,30 @@ class _Builder:
         parent.node.lines[key] = line
         parent.key = key
 
+    def _goes_on(self, event: Any) -> bool:
+        """Tell whether digits stand right behind a whole number: with a comma in between."""
+        if self.before is None or not _DIGITS.fullmatch(event.value):
+            return False
+        end, begin = self.before.end_mark, event.start_mark
+        beside = (begin.line, begin.column) == (end.line, end.column + 1)
+        return beside and _WHOLE.fullmatch(self.before.value) is not None
+
+    def _note_comma(self, digits: str, line: int) -> str:
+        """Note that ``radius: 0,3`` in braces is no value 0 with a key 3 behind it.
+
+        Returns:
+            A key under which the document can be read to its end: there may be more of them.
+        """
+        steps = [
+            f"[{len(one.node.data)}]" if one.key is None else f".{one.key:.60}"
+            for one in self.open[:-1]
+        ]
+        key = next(reversed(self.open[-1].node.data))
+        place = "".join((*steps, f".{key:.60}")).lstrip(".")
+        told = f"{self.before.value:.20},{digits:.20}"
+        self.commas.append(f"{self.where}:{line}: {place}: {decimal_comma(told)}")
+        return f"{key} {told}"
+
     def _spend(self, nodes: int, line: int) -> None:
         self.count += nodes
         if self.count > MAX_NODES:
@@ -237,6 +272,13 @@ class _Builder:
 
     def _error(self, line: int, message: str) -> UserError:
         return UserError(f"{self.where}:{line}: {message}")
+
+
+def decimal_comma(text: str) -> str:
+    """Say what is wrong with ``0,3``; nothing about what is no number with a comma."""
+    if not _COMMA.fullmatch(text):
+        return ""
+    return f"{text:.40} has a decimal comma; write {text.replace(',', '.'):.40}"
 
 
 def _resolve(text: str) -> Any:

@@ -23,6 +23,7 @@ from fuzzyq_bullet.planning.registry import (
 )
 from fuzzyq_bullet.planning.settings import PolicySettings, RoutineSettings
 from fuzzyq_bullet.quantities import MAX_OBSTACLES
+from fuzzyq_bullet.reading.kinds import SCENARIO, refuse_other_kind, refuse_other_suffix
 from fuzzyq_bullet.reading.problems import Problem, lines_of
 from fuzzyq_bullet.reading.yaml_tree import Node, read_tree
 from fuzzyq_bullet.scenario.checks import find_conflicts
@@ -60,12 +61,11 @@ def load_scenario(source: Source, *, policies: bool = True) -> Scenario:
     """
     path = find_scenario(source)
     refuse_suffix(path)
-    return parse_scenario(
-        _read(path),
-        str(path),
-        folder=path.parent,
-        policies=policies,
-    )
+    try:
+        return parse_scenario(_read(path), str(path), folder=path.parent, policies=policies)
+    except UserError:
+        refuse_other_suffix(path)
+        raise
 
 
 def parse_scenario(
@@ -104,6 +104,7 @@ def parse_scenario(
         scenario = Scenario.model_validate(data)
     except ValidationError as error:
         refuse_keys(text, where)
+        refuse_other_kind(where, tree.data, SCENARIO)
         problems = problems_of(error, tree.data)
         more = max(0, error.error_count() - MAX_WORDED)
     except Exception as error:  # of the settings of a planner of the user's own

@@ -48,6 +48,9 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
         problem = _problem(dict(item), data)
         if problem.loc not in found or is_short_list(dict(item)):
             found[problem.loc] = problem
+    for *motion, key in list(found):
+        if key == "file":  # of a trace, whose rows are missing for that reason alone
+            found.pop((*motion, "poses"), None)
     return list(found.values())
 
 
@@ -99,10 +102,26 @@ def _problem(error: dict[str, Any], data: Any) -> Problem:
         return Problem(loc, no_robot(value))
     keys = _keys_at(tuple(error["loc"][:-1]), data) if kind == "extra_forbidden" else []
     problem = problem_of(error, loc, keys)
+    if kind in ("model_type", "model_attributes_type") and (right := _as_mapping(loc, value)):
+        return replace(problem, message=f"{problem.message}; write {right}")
     if loc[-1] in ANGLE_KEYS and kind in ("less_than_equal", "greater_than_equal"):
         turned = f"; radians are meant: {round(math.radians(value), 2):g}?"
         return replace(problem, message=problem.message + turned)
     return problem
+
+
+def _as_mapping(loc: Loc, value: Any) -> str:
+    """Return how a value that stands alone is written as the mapping that belongs there."""
+    key = _ALONE.get(str(loc[0])) if len(loc) == 1 or loc[0] == "via" else None
+    if key is None:
+        return ""
+    if key in ("position", "size"):
+        numbers = isinstance(value, list) and len(value) == 2
+        fits = numbers and all(type(one) in (int, float) for one in value)
+    else:
+        fits = isinstance(value, str) and value.replace("_", "").isalnum()
+    shown = value if isinstance(value, str) else shorten(value)
+    return f"{{{key}: {shown}}}" if fits else ""
 
 
 def _without_tag(loc: Loc) -> Loc:
@@ -115,6 +134,13 @@ def _without_tag(loc: Loc) -> Loc:
     return loc[:3] + loc[4:] if loc[2:3] == ("motion",) else loc
 
 
+_ALONE = {
+    **dict.fromkeys(("start", "goal", "via"), "position"),
+    "arena": "size",
+    "robot": "model",
+    "expect": "outcome",
+}
+"""The key that a value which stands alone was meant for."""
 _NAMES = {one.key: one.names for one in (SHAPES, MOTIONS, LAYOUTS)}
 """The names that are registered, by the key that gives one."""
 

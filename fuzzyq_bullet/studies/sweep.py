@@ -10,10 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from fuzzyq_bullet.episode import run
-from fuzzyq_bullet.errors import MachineError, PlannerError
+from fuzzyq_bullet.errors import MachineError, PlannerError, UserError
 from fuzzyq_bullet.files import write_text
 from fuzzyq_bullet.ground_truth import feasible
+from fuzzyq_bullet.planning.registry import make_planner
+from fuzzyq_bullet.planning.settings import PlannerSettings
 from fuzzyq_bullet.recording.metrics import result_of
 from fuzzyq_bullet.recording.trajectory import Trajectory
 from fuzzyq_bullet.scenario import Scenario, realise
@@ -148,6 +152,7 @@ def sweep(
     pool: Pool,
     work: Work = work,
     progress: Progress | None = None,
+    here: bool = False,
 ) -> Sweep:
     """Run all jobs that have no row in the folder yet, and write ``NAME.csv``.
 
@@ -162,10 +167,12 @@ def sweep(
         pool: Who does the work.
         work: Turns a job into its row, in a worker: ``work`` or ``work_for_row``.
         progress: Told how far it is.
+        here: Whether the workers are of this machine: what a planner lacks here, it lacks there.
 
     Raises:
         UserError: If the folder holds a sweep with other settings, another process is at work in
-            it, it cannot be written to, or the machine fails a worker.
+            it, it cannot be written to, a planner that is still to drive cannot be made here, or
+            the machine fails a worker.
         ValueError: If two jobs have the same key.
     """
     by_key = {job.key: job for job in jobs}
@@ -182,6 +189,8 @@ def sweep(
             state.count(row)
         tell(state)
         left = [job for key, job in by_key.items() if key not in rows]
+        if here:
+            refuse_unready(left)
         began = time.monotonic()
         with closing(_finished(left, work, pool)) as results:
             for done in results:
@@ -197,6 +206,26 @@ def sweep(
         table = out / f"{name}.csv"
         write_text(table, as_csv(rows.values()))
     return Sweep(tuple(rows[key] for key in sorted(rows)), table, state)
+
+
+def refuse_unready(jobs: Sequence[Job]) -> None:
+    """Make sure that every planner can be made, before any of them drives.
+
+    Raises:
+        UserError: If one lacks what it needs, such as a package. Whatever else is wrong with one is
+            told in its rows.
+    """
+    for settings in {job.planner: job.settings for job in jobs}.values():
+        _make(settings)
+
+
+def _make(settings: PlannerSettings) -> None:
+    try:
+        make_planner(settings, np.random.default_rng(0))
+    except UserError as error:
+        raise error.under(f"planner {settings.name}") from error
+    except Exception:  # of a planner of the user's own
+        return
 
 
 def _finished(jobs: Sequence[Job], work: Work, pool: Pool) -> Generator[Done, None, None]:

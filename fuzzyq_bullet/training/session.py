@@ -115,6 +115,8 @@ def episodes_done(
 ) -> int:
     """Return how many episodes of the training that is to go on are done already.
 
+    A training that is finished goes on too: nothing of it is left to do.
+
     Raises:
         UserError: If another training was begun or finished there, or the same was begun, and it
             was not said what is to become of it.
@@ -144,7 +146,7 @@ def episodes_done(
             f"{finished[0]}: is there already, and not of this training; --anew replaces it, "
             "another --out leaves it alone"
         )
-    return 0
+    return done
 
 
 def _is_same(config: TrainingConfig, tasks: Tasks | FieldTask, files: TrainingFiles) -> bool:
@@ -155,7 +157,8 @@ def _is_same(config: TrainingConfig, tasks: Tasks | FieldTask, files: TrainingFi
         return False
     if isinstance(tasks, FieldTask) and policy.parameters.get("run") != tasks.run_digest():
         return False
-    return (policy.command, policy.scenario) == (config.command, tasks.digest())
+    made = (config.command, tasks.digest(), __version__)
+    return (policy.command, policy.scenario, policy.version) == made
 
 
 def episodes_kept(checkpoint: Path) -> int:

@@ -147,6 +147,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     # 2·√(0.4² − 0.3999²) = 18 mm: seven physics steps at full speed.
     for name, y in (("clear", 1.402), ("graze", 1.3999), ("moved", 1.0)):
         (fields / f"{name}.yaml").write_text(LANE.format(name=name, y=y))
+    # The box of this robot passes 6 cm from the cylinder, which the disc around it overlaps by 5.
+    slim = LANE.format(name="slim", y=1.48) + "robot: {model: jackal}\n"
+    (fields / "slim.yaml").write_text(slim + "expect: {min_clearance: 0.0}\n")
     for name, more in MISSES.items():
         text = gate("good").replace("name: good", f"name: {name}")
         (fields / f"{name}.yaml").write_text(
@@ -214,6 +217,21 @@ def test_a_run_that_touches_nothing_is_held_to_clearance_time_and_goal(
     assert given_up.why[1].startswith("ended at (")
 
 
+def test_a_disc_that_overlaps_an_obstacle_without_a_contact_touches_nothing(
+    verdicts: dict[str, Verdict],
+) -> None:
+    slim = verdicts["slim"]
+    assert slim.result is not None
+    assert slim.touch is not None
+    assert (slim.status, slim.result.outcome, slim.touch.obstacle) == ("failed", "goal", 1)
+    assert slim.touch.distance_m == pytest.approx(-0.053, abs=0.002)
+    depth = f"{-slim.touch.distance_m:.3f} m"
+    assert slim.why[0] == f"least clearance -{depth}, expected 0 m or more"
+    place = f"obstacles[1] (fields/slim.yaml:{LINE})"
+    assert f"the disc around the robot {depth} into the cylinder {place}, no con" in slim.why[1]
+    assert "touched" not in "".join(slim.why)
+
+
 def test_a_planner_that_raises_is_broken_and_says_how(verdicts: dict[str, Verdict]) -> None:
     verdict = verdicts["raise"]
     assert verdict.status == "broken"
@@ -249,7 +267,7 @@ def test_wrong_input_is_told_and_outweighs_failures(
     assert "error: fields/wrong.yaml:1: goal: is required" in told
     assert "error: fields/zzz.yaml:1: name: good is the name of fields/good.yaml too" in told
     assert "error: fields/link.yaml: cannot be read: a link to nowhere.yaml, which is " in told
-    assert "2 passed, 9 failed, 4 mistakes in the input in " in told
+    assert "2 passed, 10 failed, 4 mistakes in the input in " in told
     assert "Traceback" not in told
     assert f"::error file=fields/straight.yaml,line={LINE},title=straight::outcome coll" in told
     assert "::error file=fields/wrong.yaml,line=1," in told
@@ -353,7 +371,7 @@ def test_the_junit_report_is_valid_and_counts_right(
     report = etree.parse(str(folder / "reports" / "junit.xml"))
     schema.assertValid(report)
     suite = report.find("testsuite")
-    assert suite.get("failures") == "8"
+    assert suite.get("failures") == "9"
     assert int(suite.get("tests")) == len(suite.findall("testcase"))
     assert int(suite.get("errors")) == 1 + len(json.loads(checked.stdout)["problems"])
     # A name that XML cannot hold does not spoil it.
@@ -401,6 +419,24 @@ def test_a_record_that_cannot_be_read_is_a_mistake_and_the_scenario_runs(
     assert (done.returncode, done.stdout[:10]) == (2, "ok    good")
     assert "1 not compared: not recorded yet" in done.stderr
     assert "error: check-record.json: not a record of fuzzyq check --record" in done.stderr
+
+
+def test_what_cannot_be_recorded_is_told_before_anything_is_driven(
+    inside: Call, tmp_path: Path
+) -> None:
+    lane = LANE.format(name="lane", y=1.6).replace("{name: bad, how: straight}", "fuzzy")
+    (tmp_path / "lane.yaml").write_text(lane)
+    record = tmp_path / "check-record.json"
+    record.mkdir()
+    with pytest.raises(
+        UserError, match=r"check-record\.json: cannot be written: there is a folder"
+    ):
+        inside("check", ".", "--record", cwd=tmp_path)
+    record.rmdir()
+    record.write_text("{")
+    with pytest.raises(UserError, match=r"check-record\.json: not a record of fuzzyq check"):
+        inside("check", ".", "--record", cwd=tmp_path)
+    assert record.read_text() == "{"
 
 
 def test_a_bundled_scenario_is_not_recorded_into_the_installation(

@@ -44,7 +44,7 @@ USAGE = {
     ("rnu",): ["'rnu'", "Did you mean 'run'"],
     ("run",): ["SCENARIO"],
     ("run", "mixed", "--plannr", "x"): ["--plannr", "--planner"],
-    ("run", "mixed", "--seed", "x"): ["--seed", "integer"],
+    ("run", "mixed", "--seed", "x"): ["--seed", "whole number"],
     ("run", "mixed", "--seed", "-1"): ["--seed: ", "0 to", "-1"],
     ("run", "mixed", "--speed", "nan"): ["--speed", "0.1 to 100"],
     ("run", "mixed", "--planner", "fuzy"): [
@@ -79,6 +79,38 @@ def test_a_mistake_on_the_command_line(
         assert told(fuzzyq(*args, cwd=tmp_path)) == line
     assert all(word in line for word in USAGE[args])
     assert not list(tmp_path.iterdir())
+
+
+OPTIONS = {
+    ("check", "mixed", "--repeat", "0"): "'--repeat': must be at least 1, got 0",
+    ("check", "mixed", "--timeout", "nan"): "'--timeout': must be at most 86400, got nan",
+    (
+        "check",
+        "mixed",
+        "--video",
+        "fail",
+    ): "'--video': 'fail' is not one of 'failed', 'all', 'none'",
+    ("bench", "field", "--runs", "0"): "'--runs': must be at least 1, got 0",
+    ("bench", "speed", "--rounds", "101"): "'--rounds': must be at most 100, got 101",
+    ("run", "mixed", "--seed", "1.5"): "'--seed': expected a whole number, got '1.5'",
+    ("run", "mixed", "--speed", "0,5"): "'--speed': 0,5 has a decimal comma; write 0.5",
+    ("explain", "abc", "1"): "'D': expected a number, got 'abc'",
+}
+
+
+@pytest.mark.parametrize("args", OPTIONS, ids=" ".join)
+def test_an_option_of_a_wrong_value_is_told_in_the_words_of_the_project(
+    args: tuple[str, ...], inside: Call, tmp_path: Path
+) -> None:
+    told = f"error: Invalid value for {OPTIONS[args]} (see fuzzyq "
+    assert refused(inside, *args, cwd=tmp_path).startswith(told)
+
+
+def test_a_plugin_that_is_not_there_is_told_without_an_exception(
+    inside: Call, tmp_path: Path
+) -> None:
+    line = refused(inside, "run", "mixed", "--plugin", "nop.py", cwd=tmp_path)
+    assert line == "error: --plugin: nop.py: there is no such file"
 
 
 def bomb() -> str:
@@ -293,7 +325,7 @@ def test_other_files_are_no_records(inside: Call, filmed: Path, tmp_path: Path) 
     with array.open("wb") as stream:
         np.save(stream, np.arange(3))
     assert "damaged" in refusal(array)
-    assert "damaged" in refused(inside, "replay", filmed / "short.mp4")
+    assert "is a video, not a record" in refused(inside, "replay", filmed / "short.mp4")
 
 
 def test_nothing_in_a_record_is_executed(filmed: Path, tmp_path: Path) -> None:

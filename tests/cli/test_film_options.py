@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import json
+import shlex
 import shutil
+import signal
 from pathlib import Path
 
 import pytest
 from PIL import Image
+from rich.console import Console
 
-from fuzzyq_bullet.errors import UserError
+from fuzzyq_bullet.errors import Stopped, UserError
 from tests.helpers.commands import SHORT, Call
 
+RACE_OF = ("race", "--planners", "fuzzy-q-lambda,fuzzy")
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "extend" / "view.py"
 
 
@@ -80,6 +85,42 @@ def test_the_example_of_a_view_is_filmed(inside: Call, filmed: Path, tmp_path: P
         bar = image.convert("RGB").crop((128, 490, 1152, 520))
         green = sum(1 for pixel in bar.get_flattened_data() if pixel == (20, 184, 138))
     assert green > 0.6 * 1024 * 24, "the robot is in the goal"
+
+
+@pytest.mark.parametrize(
+    ("words", "film"),
+    [
+        (("run", "--to", "0.2"), "short-map-320x240-5fps-2x-to0.2s.mp4"),
+        (RACE_OF, "race-short-vs-short-fuzzy-map-320x240-5fps-2x.mp4"),
+    ],
+    ids=["run", "race"],
+)
+def test_a_film_that_is_interrupted_leaves_the_records_and_the_command_that_films_them(
+    words: tuple[str, ...],
+    film: str,
+    inside: Call,
+    short: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise Stopped(signal.SIGINT)
+
+    command, *more = words
+    how = ("--view", "map", "--size", "320x240", "--fps", "5", "--speed", "2")
+    said = io.StringIO()
+    with monkeypatch.context() as patch:
+        patch.setattr("fuzzyq_bullet.video.record", stop)
+        patch.setattr("fuzzyq_bullet.cli.options.stderr", Console(file=said))
+        with pytest.raises(Stopped):
+            inside(command, short, *more, "--out", tmp_path, *how)
+    [line] = [one for one in said.getvalue().splitlines() if "to film: " in one]
+    kept, _, again = line.partition("; to film: fuzzyq ")
+    names = ["short"] if command == "run" else ["short", "short-fuzzy"]
+    records = [tmp_path / f"{name}.npz" for name in names]
+    assert kept == f"kept: {', '.join(map(str, records))}"
+    assert inside(*shlex.split(again)).returncode == 0
+    assert [path.name for path in tmp_path.glob("*.mp4")] == [film]
 
 
 RACE = ("--view", "map", "--size", "320x240", "--speed", "10")

@@ -129,18 +129,32 @@ def test_ctrl_c_and_a_kill_cost_nothing_but_the_running_episode(
     assert [one.read_bytes() for one in files] == [one.read_bytes() for one in whole]
 
 
+@pytest.mark.parametrize("more", [["--resume"], []], ids=["resume", "again"])
 def test_what_is_done_already_stays_as_it_is(
-    whole: Files, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    more: list[str], whole: Files, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     files = Files.of(tmp_path / "again.json")
-    files.checkpoint.write_bytes(whole.checkpoint.read_bytes())
-    call(*ASKED, "--out", files.policy, "--resume", "--json")
+    for copy, one in zip(files, whole, strict=True):
+        copy.write_bytes(one.read_bytes())
+    if more:  # ended when all was learned, and nothing written
+        files.policy.unlink()
+        files.picture.unlink()
+    call(*ASKED, "--out", files.policy, *more, "--json")
     out, err = capsys.readouterr()
     summary = json.loads(out)
     assert summary["episodes_now"] == 0
     assert summary["episodes_per_s"] is None
-    assert f"all {EPISODES} episodes were done already" in err
+    assert f"all {EPISODES} episodes were done already; --anew trains again" in err
     assert [one.read_bytes() for one in files] == [one.read_bytes() for one in whole]
+
+
+def test_the_policy_of_another_version_is_not_replaced(whole: Files, tmp_path: Path) -> None:
+    files = Files.of(tmp_path / "older.json")
+    older = load_policy(whole.policy).model_copy(update={"version": "0.0.1"})
+    older.save(files.policy)
+    line = refused(*ASKED, "--out", files.policy)
+    assert line.startswith(f"{files.policy}: is there already, and not of this training; --anew")
+    assert load_policy(files.policy) == older
 
 
 def test_the_command_in_a_policy_makes_its_bytes_again_over_whatever_was_begun(
@@ -183,7 +197,7 @@ MISTAKES: dict[tuple[str, ...], list[str]] = {
     ("improved-fuzzy",): ["PLANNER: ", "improved-fuzzy does not learn", PLANNER],
     (PLANNER, "--episodes", "0"): ["--episodes: ", "1 to 1000000", "got 0"],
     (PLANNER, "--episodes", "-3"): ["--episodes: ", "got -3"],
-    (PLANNER, "--episodes", "many"): ["--episodes", "integer"],
+    (PLANNER, "--episodes", "many"): ["--episodes", "whole number"],
     (PLANNER, "--drive", "kinematics"): ["--drive: ", "did you mean 'kinematic'?", "wheels"],
     (PLANNER, "--seed", "-1"): ["--seed: ", "from 0 to", "got -1"],
     (PLANNER, "--scenario", "opn-field"): ["opn-field", "did you mean 'open-field'?"],

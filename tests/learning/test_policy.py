@@ -216,7 +216,7 @@ BAD_FILES: dict[str, tuple[str | bytes, str]] = {
         ": a whole number of 1000000 digits",
     ),
     "large": (" " * (MAX_BYTES + 1), ": too large"),
-    "no format": (without("format"), ": format: is null; this version reads policies of format 1"),
+    "no format": (without("format"), ": is not a policy: it has no format; fuzzyq train writes"),
     "next format": (changed(format=2), ": format: is 2; this version"),
     "true format": (changed(format=True), ": format: is true; this version"),
     "unknown key": (changed(**{"\x1b[31mextra\n": 1}), ": unknown key; a policy has actions, comm"),

@@ -343,6 +343,7 @@ def test_the_record_tells_where_everything_was(tmp_path: Path) -> None:
         ("kind: trace, file: inside.csv", r"motion: begins inside obstacles\[1\]"),
         ("kind: trace, file: start.csv", "motion: begins .* from the start"),
         ("kind: trace, file: wall.csv", "motion: begins in a wall"),
+        ("kind: trace, file: 3", "motion.file: expected text, got 3; put it in quotes"),
         ("kind: circle, centre: [3, 1], speed: 0.5", "motion.centre: is the obstacle's own"),
         ("kind: circle, centre: [3, 1.1], speed: 1", "motion: its edge moves at 3.50 m/s; at most"),
     ],
@@ -369,6 +370,13 @@ def test_a_motion_that_cannot_be_is_one_line(motion: str, words: str, tmp_path: 
     with pytest.raises(UserError, match=rf"room\.yaml:6: obstacles\[0\]\.{words}") as told:
         load_scenario(path)
     assert len(told.value.problems) == 1
+
+
+def test_what_moves_wholly_outside_the_arena_is_told_once() -> None:
+    with pytest.raises(UserError) as told:
+        room(disc(9.0, 2.0, "kind: patrol, points: [[9, 2], [9, 3]], speed: 0.5"))
+    [line] = told.value.problems
+    assert line.startswith("scenario:6: obstacles[0].position: is wholly outside the walls")
 
 
 def test_a_wanderer_needs_room() -> None:

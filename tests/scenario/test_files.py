@@ -79,6 +79,13 @@ def test_the_least_scenario_is_read_with_defaults():
         ("arena: {size: [10.0, -.inf]}", "x.yaml:4: arena.size[1]: must be finite, got -inf"),
         ("arena: {size: [10.0, 0]}", "x.yaml:4: arena.size[1]: must be more than 0, got 0"),
         ("arena: {walls: yes}", "x.yaml:4: arena.walls: expected true or false, got 'yes'"),
+        ("arena: [9, 9]", "x.yaml:4: arena: expected a mapping (key: value), got [9, 9]; "
+         "write {size: [9, 9]}"),
+        ("via: [[5, 2]]", "x.yaml:4: via[0]: expected a mapping (key: value), got [5, 2]; "
+         "write {position: [5, 2]}"),
+        ("robot: jackal", "x.yaml:4: robot: expected a mapping (key: value), got 'jackal'; "
+         "write {model: jackal}"),
+        ("arena: [a, b]", "x.yaml:4: arena: expected a mapping (key: value), got ['a', 'b']"),
         ("arena:", "x.yaml:4: arena: expected a mapping (key: value), got nothing"),
         ("seed: 1.5", "x.yaml:4: seed: expected a whole number, got 1.5"),
         ("seed: true", "x.yaml:4: seed: expected a whole number, got true"),
@@ -174,6 +181,15 @@ def test_yaml_1_2_numbers_are_numbers_and_yaml_1_1_oddities_are_text():
         (GOOD + "name: again\n", "x.yaml:4: the key 'name' is given twice, first on line 1"),
         (GOOD + "---\n" + GOOD, "x.yaml:4: a second document begins; one in a file"),
         (GOOD + "5: a\n", "x.yaml:4: a key must be text, got 5; put it in quotes"),
+        (
+            GOOD + "limits: {time: 4, 3: 1}\n",
+            "x.yaml:4: a key must be text, got 3; put it in quotes",
+        ),
+        (GOOD + "seed: 1\n2: a\n", "x.yaml:5: a key must be text, got 2; put it in quotes"),
+        (
+            GOOD + "arena: {size: [9, 9], 3: a}\n",
+            "x.yaml:4: a key must be text, got 3; put it in quotes",
+        ),
         (GOOD + "null: a\n", "x.yaml:4: a key must be text, got null; put it in quotes"),
         (GOOD + "[a]: b\n", "x.yaml:4: a key must be text, got a list or mapping"),
         (GOOD + "seed: !!python/object/apply:os.system [id]\n",
@@ -457,6 +473,31 @@ def test_finished_settings_are_taken_and_those_of_no_planner_refused():
     assert Scenario.model_validate({**data, "planner": finished}).planner is finished
     with pytest.raises(ValidationError, match="must be one of"):
         Scenario.model_validate({**data, "planner": PlannerSettings(name="no-such")})
+
+
+@pytest.mark.parametrize(
+    ("radius", "right"), [("0,3", "0.3"), ("0,25", "0.25"), ("-0,5", "-0.5"), ("10,05", "10.05")]
+)
+def test_a_decimal_comma_is_told_with_the_number_to_write(radius: str, right: str):
+    told = f"obstacles[1].radius: {radius} has a decimal comma; write {right}"
+    inline, below = "{{shape: cylinder, position: [5, 3], {0}}}", "shape: cylinder\n    {0}"
+    for form in (inline, below):
+        obstacle = form.format(f"radius: {radius}").replace(
+            "\n    ", "\n    position: [5, 3]\n    "
+        )
+        text = GOOD + f"obstacles:\n  - {inline.format('radius: 1')}\n  - {obstacle}\n"
+        line = 6 if form is inline else 8
+        assert only(text) == f"x.yaml:{line}: {told}"
+
+
+def test_all_decimal_commas_of_a_file_are_told_at_once():
+    one = "{shape: cylinder, position: [5, 3], radius: 0,3, motion: {kind: line, speed: 1,5}}"
+    told = problems(GOOD + f"limits: {{time: 9,5}}\nobstacles: [{one}, {one}]\n")
+    assert [line.split()[1] for line in told] == [
+        "limits.time:",
+        *(f"obstacles[{i}].{key}:" for i in (0, 1) for key in ("radius", "motion.speed")),
+    ]
+    assert len(problems(GOOD + f"obstacles: [{', '.join([one] * 20)}]\n")) == 10
 
 
 MAPS = Path(__file__).parent / "maps"

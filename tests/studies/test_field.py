@@ -319,6 +319,16 @@ def test_a_planner_that_fails_fails_alone(fuzzyq: Call, tmp_path: Path) -> None:
     assert f"{plugin}:9" in error
 
 
+def test_a_planner_that_lacks_what_it_needs_is_told_before_any_drives(
+    inside: Call, tmp_path: Path
+) -> None:
+    planners = ("--planners", "improved-fuzzy,process", "--kinds", "scatter", "--runs", "1")
+    with pytest.raises(UserError, match=r"^planner process: ") as error:
+        inside("bench", "field", *planners, "--out", tmp_path / "out")
+    assert len(error.value.problems) == 1
+    assert not (tmp_path / "out" / "field.csv").exists()
+
+
 @pytest.mark.parametrize(
     ("option", "value"),
     [

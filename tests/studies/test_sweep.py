@@ -20,7 +20,7 @@ from fuzzyq_bullet import Trajectory, UserError, run
 from fuzzyq_bullet.cli.app import call
 from fuzzyq_bullet.errors import MachineError
 from fuzzyq_bullet.ground_truth import feasible
-from fuzzyq_bullet.planning import ImprovedFuzzySettings
+from fuzzyq_bullet.planning import ImprovedFuzzySettings, settings_for
 from fuzzyq_bullet.scenario import Limits, realise
 from fuzzyq_bullet.studies.episodes import Environment, Job, Row, as_csv
 from fuzzyq_bullet.studies.storage import Folder, Journal
@@ -136,6 +136,18 @@ def test_a_row_is_what_the_run_says_and_a_failure_comes_with_its_record(tmp_path
 
 
 # Errors and deaths
+
+
+def test_a_planner_that_lacks_what_it_needs_is_refused_where_it_is_still_to_drive(
+    here: Pool, tmp_path: Path
+) -> None:
+    lacking = settings_for("process").model_validate({"name": "process"})
+    jobs = [replace(job, settings=lacking) for job in jobs_for(5, 2)]
+    # The workers of a cluster may have what this machine lacks.
+    done = sweep("far", jobs[:1], tmp_path, {}, pool=here, work=quick)
+    with pytest.raises(UserError, match=r"^planner process: "):
+        sweep("far", jobs, tmp_path, {}, pool=here, work=quick, here=True)
+    assert sweep("far", jobs[:1], tmp_path, {}, pool=here, work=quick, here=True).rows == done.rows
 
 
 class Crashing:

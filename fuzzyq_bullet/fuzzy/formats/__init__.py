@@ -16,6 +16,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.files import read_text, written_beside
 from fuzzyq_bullet.fuzzy.definition import ControllerDefinition
 from fuzzyq_bullet.fuzzy.formats import fis, fll, yaml_format
+from fuzzyq_bullet.reading.kinds import RULES, refuse_other_kind
 from fuzzyq_bullet.reading.problems import Problem, keys_at, lines_of, problem_of
 from fuzzyq_bullet.reading.yaml_tree import Node
 from fuzzyq_bullet.wording import shorten
@@ -81,6 +82,7 @@ def load_controller(path: Path | str) -> ControllerDefinition:
     try:
         return ControllerDefinition.model_validate(tree.data)
     except ValidationError as error:
+        refuse_other_kind(where, tree.data, RULES)
         raise UserError(*lines_of(_problems_in(error), 0, tree, where)) from error
 
 
