@@ -124,5 +124,5 @@ def test_a_reward_of_ones_own_that_goes_wrong_is_one_line(monkeypatch: pytest.Mo
         register_reward("hit=3")
     with pytest.raises(UserError, match="reward lost: returned nan at 2 s; a number from"):
         RewardSettings.parse("lost").of(step())
-    with pytest.raises(UserError, match="reward broken: ZeroDivisionError"):
+    with pytest.raises(UserError, match="reward broken: stopped by ZeroDivisionError"):
         RewardSettings.parse("broken").of(step())
