@@ -81,6 +81,20 @@ def test_a_planner_from_a_file_in_another_folder_is_swept(fuzzyq: Call, tmp_path
     assert "died" not in (tmp_path / "here" / "out" / "escape" / "escape.csv").read_text()
 
 
+def test_a_study_whose_episodes_failed_says_why_the_first_did(fuzzyq: Call, tmp_path: Path) -> None:
+    broken = PLANNER.replace("return Decision", "raise ValueError('lost'); return Decision")
+    (tmp_path / "broken.py").write_text(broken)
+    done = fuzzyq(
+        *("bench", "escape", "--plugin", "broken.py", "--planner", "mine", "--drive", "kinematic"),
+        *("--runs", 2, "--counts", 5, "--traps", 0, "--rectangles", "none", "--jobs", 1),
+        cwd=tmp_path,
+    )
+    assert done.returncode == 1
+    said = done.stderr.splitlines()
+    told = next(k for k, line in enumerate(said) if line.startswith("2 episodes failed"))
+    assert "planner mine: stopped by ValueError: lost, after 0.00 s (" in said[told + 1]
+
+
 WORKING = """\
 from fuzzyq_bullet.studies import (
     FieldsPlan, Findings, Study, described, planners_of, register_study
