@@ -37,13 +37,10 @@ class _Kind:
     use: str = ""
 
 
+_USE_RULES = "name it in a scenario: planner: {{name: improved-fuzzy, rules: {0}}}"
 _KINDS = (
     _Kind(SCENARIO, frozenset({"start", "goal"}), "fuzzyq run {0} drives it"),
-    _Kind(
-        RULES,
-        frozenset({"inputs", "outputs", "rules"}),
-        "name it in a scenario: planner: {{name: improved-fuzzy, rules: {0}}}",
-    ),
+    _Kind(RULES, frozenset({"inputs", "outputs", "rules"}), _USE_RULES),
     _Kind("the result of a run", frozenset({"scenario", "outcome", "digest"})),
     _Kind(
         POLICY,
@@ -51,11 +48,9 @@ _KINDS = (
         "name it in a scenario: planner: {{name: PLANNER, policy: {0}}}",
     ),
 )
-
-
 _SUFFIXES = {
     ".npz": ("a record", "fuzzyq replay {0} films it"),
-    **dict.fromkeys((".fll", ".fis"), (RULES, _KINDS[1].use)),
+    **dict.fromkeys((".fll", ".fis"), (RULES, _USE_RULES)),
 }
 """What files of a suffix are, none of them a scenario, and what to do with one."""
 
@@ -72,7 +67,7 @@ def refuse_other_suffix(path: Path) -> None:
 
 
 def refuse_other_kind(where: str, keys: Collection[str], wanted: str) -> None:
-    """Make sure that a file in which mistakes were found is not one of another kind, by its keys.
+    """Make sure that a file is not one of another kind, by its keys.
 
     Args:
         where: Its path.

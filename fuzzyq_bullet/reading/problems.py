@@ -59,11 +59,19 @@ def lines_of(problems: list[Problem], more: int, tree: Node, where: str) -> list
         line, shown = _locate(problem, tree)
         told.append((line, f"{where}:{line}: {key_path(shown)}: {problem.message}"))
     told.sort(key=lambda entry: entry[0])
-    lines = [text for _, text in told[:MAX_SHOWN]]
-    more += max(0, len(told) - MAX_SHOWN)
-    if more:
-        lines.append(f"{where}: and {more} more")
-    return lines
+    return first_lines([text for _, text in told], where, more)
+
+
+def first_lines(lines: Sequence[str], where: str, more: int = 0) -> list[str]:
+    """Return the first ``MAX_SHOWN`` lines, and one that counts the others, if there are any.
+
+    Args:
+        lines: A line for each mistake.
+        where: The file or scenario that has them.
+        more: Number of mistakes beside those given.
+    """
+    more += max(0, len(lines) - MAX_SHOWN)
+    return [*lines[:MAX_SHOWN], *([f"{where}: and {more} more"] if more else [])]
 
 
 def _locate(problem: Problem, tree: Node) -> tuple[int, Loc]:
@@ -184,8 +192,7 @@ def _bound(words: str, limit: str) -> Callable[[Any, dict[str, Any]], str]:
 def _length(value: Any, context: dict[str, Any]) -> str:
     bound = context.get("max_length", context.get("min_length"))
     limit = "at most" if "max_length" in context else "at least"
-    got = context.get("actual_length")
-    # pydantic stops counting a long one
+    got = context.get("actual_length")  # None of a long one: pydantic stops counting
     return f"must have {limit} {bound} values, got {'more' if got is None else got}"
 
 

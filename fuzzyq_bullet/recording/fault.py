@@ -63,7 +63,7 @@ def speeds_in_words(trajectory: Trajectory) -> str:
     other, own = mover_speed(trajectory), robot_speed(trajectory)
     if other is None or own is None:
         return ""
-    whose = "at fault" if own > FAULT_SPEED else "not at fault"
+    whose = "at fault" if at_fault(trajectory) else "not at fault"
     # A speed that is rounded to the limit would not say on which side of it it is.
     told = f"{own:.4g}" if round(own, 2) == FAULT_SPEED else f"{own:.2f}"
     return f"it moved at {other:.2f} m/s, the robot at {told} m/s: {whose}"

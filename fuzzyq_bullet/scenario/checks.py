@@ -17,7 +17,7 @@ from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import Field
 from fuzzyq_bullet.planning.base import LONGEST_STRIDE
 from fuzzyq_bullet.quantities import TOUCH
-from fuzzyq_bullet.reading.problems import MAX_SHOWN, Loc, key_path
+from fuzzyq_bullet.reading.problems import Loc, first_lines, key_path
 from fuzzyq_bullet.scenario.layouts.placing import separated
 from fuzzyq_bullet.scenario.models import Scenario
 from fuzzyq_bullet.scenario.motion_checks import motion_conflicts
@@ -63,10 +63,8 @@ def check(scenario: Scenario) -> None:
     """
     conflicts = find_conflicts(scenario)
     if conflicts:
-        lines = [f"{scenario.name}: {key_path(loc)}: {why}" for loc, why in conflicts[:MAX_SHOWN]]
-        if len(conflicts) > MAX_SHOWN:
-            lines.append(f"{scenario.name}: and {len(conflicts) - MAX_SHOWN} more")
-        raise UserError(*lines)
+        lines = [f"{scenario.name}: {key_path(loc)}: {why}" for loc, why in conflicts]
+        raise UserError(*first_lines(lines, scenario.name))
 
 
 def _drive(scenario: Scenario) -> list[Conflict]:

@@ -105,8 +105,8 @@ class Motion(Model, ABC):
     def top_speed(self, obstacle: Moving) -> float | None:
         """Return the greatest speed (m/s) of any part of the obstacle; None if it has to be seen.
 
-        The robot is told how fast what moves may come. If no motion tells it, its course is looked
-        at before each run, for a minute.
+        The robot is told how fast what moves may come. Where a motion does not tell, the first
+        minute of its course is looked at before each run.
         """
         return None
 

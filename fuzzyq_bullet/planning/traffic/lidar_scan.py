@@ -58,7 +58,7 @@ def in_free_space(earlier: LidarScan, points: Floats, tolerance: float) -> Flags
     ray, distance = _ray_before(earlier, points)
     count = len(earlier.lengths)
     off = (tolerance - SURFACE_TOLERANCE) / np.maximum(distance, 1e-6)  # an angle (rad)
-    more = np.minimum(np.ceil(off / (math.tau / count) - 1e-9), count // 4)
+    more = np.minimum(np.ceil(off / (math.tau / count) - 1e-9), count // 4)  # to 90° either way
     offsets = np.arange(-int(more.max(initial=0.0)), int(more.max(initial=0.0)) + 2)
     beside = (offsets >= -more[:, None]) & (offsets <= more[:, None] + 1)
     lengths = earlier.lengths[(ray[:, None] + offsets) % count]

@@ -7,7 +7,7 @@ from pathlib import Path
 from fuzzyq_bullet.errors import UserError
 from fuzzyq_bullet.geometry import WALL, Field
 from fuzzyq_bullet.quantities import TOUCH, Point
-from fuzzyq_bullet.reading.problems import MAX_SHOWN, Loc, key_path
+from fuzzyq_bullet.reading.problems import Loc, first_lines, key_path
 from fuzzyq_bullet.scenario.checks import find_conflicts
 from fuzzyq_bullet.scenario.importers.foreign import ImportOptions
 from fuzzyq_bullet.scenario.importers.room import Room
@@ -73,10 +73,8 @@ def refuse_conflicts(path: Path, scenario: Scenario, options: ImportOptions) -> 
     """
     conflicts = find_conflicts(scenario)
     if conflicts:
-        lines = [f"{_place_of(path, loc, options)}: {why}" for loc, why in conflicts[:MAX_SHOWN]]
-        if len(conflicts) > MAX_SHOWN:
-            lines.append(f"{path}: and {len(conflicts) - MAX_SHOWN} more")
-        raise UserError(*lines)
+        lines = [f"{_place_of(path, loc, options)}: {why}" for loc, why in conflicts]
+        raise UserError(*first_lines(lines, str(path)))
 
 
 def _place_of(path: Path, loc: Loc, options: ImportOptions) -> str:
